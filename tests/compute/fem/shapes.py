@@ -1,0 +1,52 @@
+"""Surfaces with known spectra."""
+
+import numpy as np
+
+from compute.mesh import TriangleMesh
+
+
+def subdivide(mesh: TriangleMesh) -> TriangleMesh:
+    """Split every triangle into four, flat."""
+    edges = mesh.edges
+    middle = len(mesh.vertices) + edges.of_triangle
+    vertices = np.vstack([mesh.vertices, mesh.vertices[edges.vertices].mean(axis=1)])
+    (a, b, c), (ab, bc, ca) = mesh.triangles.T, middle.T
+    corners = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    return TriangleMesh(vertices, np.vstack([np.stack(triangle, axis=1) for triangle in corners]))
+
+
+def tetrahedron(n_subdivisions: int = 0) -> TriangleMesh:
+    """Return a regular tetrahedron with edges of length 1; flat triangles hold it exactly."""
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(8)
+    mesh = TriangleMesh(corners, [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+    for _ in range(n_subdivisions):
+        mesh = subdivide(mesh)
+    return mesh
+
+
+def rectangle(n_long: int, n_short: int, width: float = 2.0, height: float = 1.0) -> TriangleMesh:
+    """Return a flat rectangle of n_long by n_short cells, two triangles each."""
+    x, y = np.meshgrid(np.linspace(0, width, n_long + 1), np.linspace(0, height, n_short + 1), indexing="ij")
+    number = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    triangles = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
+    return TriangleMesh(np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3), triangles)
+
+
+def icosphere(n_subdivisions: int = 0) -> TriangleMesh:
+    """Return a sphere of radius 1 from a regular icosahedron."""
+    golden = (1 + np.sqrt(5)) / 2
+    pairs = [(a, b * golden) for a in (-1, 1) for b in (-1, 1)]
+    vertices = np.array([np.roll([0, a, b], k) for k in range(3) for a, b in pairs])
+    distance = np.linalg.norm(vertices[:, None] - vertices, axis=2)
+    near = np.isclose(distance, 2.0)
+    triples = [(i, j, k) for i in range(12) for j in range(i, 12) for k in range(j, 12)]
+    faces = np.array([t for t in triples if near[t[0], t[1]] and near[t[1], t[2]] and near[t[0], t[2]]])
+    a, b, c = vertices[faces].swapaxes(0, 1)
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+    faces[inward] = faces[inward][:, ::-1]
+    mesh = TriangleMesh(vertices / np.linalg.norm(vertices[0]), faces)
+    for _ in range(n_subdivisions):
+        finer = subdivide(mesh)
+        mesh = TriangleMesh(finer.vertices / np.linalg.norm(finer.vertices, axis=1)[:, None], finer.triangles)
+    return mesh
