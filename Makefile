@@ -1,0 +1,34 @@
+# Everything runs in a virtual environment that is made on first use. Another Python: make PYTHON=/path/to/python3.13
+PYTHON ?= python3
+ENVIRONMENT ?= .venv
+RUN = $(ENVIRONMENT)/bin/python
+MESH ?=
+OUTPUT ?= demo
+
+.PHONY: help environment demo test lint package test-matrix clean
+
+help:  ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1  /p' $(MAKEFILE_LIST)
+
+environment:
+	@$(PYTHON) tools/environment.py $(ENVIRONMENT)
+
+demo: environment  ## segment the example character, or MESH=path, into pictures, a .blend and a report in demo/
+	@$(RUN) tools/demo.py $(if $(MESH),--mesh "$(MESH)") --output "$(OUTPUT)"
+
+test: environment  ## engine tests and Blender tests
+	@$(RUN) -m pytest -q
+
+lint: environment  ## ruff and mypy
+	@$(RUN) -m ruff check .
+	@$(RUN) -m ruff format --check .
+	@$(RUN) -m mypy
+
+package: environment  ## one installable zip for each platform in dist/
+	@$(RUN) tools/package.py
+
+test-matrix: environment  ## the Blender tests on every supported Blender, or VERSIONS="4.2.23 5.2.3"
+	@$(RUN) tools/test_matrix.py $(VERSIONS)
+
+clean:  ## everything the other targets made
+	rm -rf $(ENVIRONMENT) .environments .*_cache dist demo wheels
