@@ -1,0 +1,22 @@
+"""The scripting API of the engine: arrays in, arrays out, no Blender."""
+
+from .analysis import Analysis, analyze
+from .errors import Cancelled, EngineError, FieldError, LevelError, MeshError, SpectrumError
+from .fem.eigenbasis import Eigenbasis, solve_eigenbasis
+from .mesh import TriangleMesh
+from .segmentation.parts import Segmentation
+
+__all__ = [
+    "Analysis",
+    "Cancelled",
+    "Eigenbasis",
+    "EngineError",
+    "FieldError",
+    "LevelError",
+    "MeshError",
+    "Segmentation",
+    "SpectrumError",
+    "TriangleMesh",
+    "analyze",
+    "solve_eigenbasis",
+]

@@ -1,0 +1,227 @@
+"""The heavy step: from a mesh to everything that levels and parts are read from."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .errors import FieldError
+from .fem.eigenbasis import Eigenbasis, solve_on_surface
+from .fields import DIFFUSION_FUNCTIONS, Net, ScalarField, diffusion_field, eigenfunction_field, user_field
+from .mesh import Ints, TriangleMesh
+from .msc.critical_points import CriticalPoints, critical_points, rank_vertices
+from .msc.links import Links, links_of
+from .progress import Progress, section, silent
+from .segmentation.arc_areas import arc_areas
+from .segmentation.branches import Branches, build_branches
+from .segmentation.faces import face_graph
+from .segmentation.hierarchy import Hierarchy, build_hierarchy
+from .segmentation.parts import Segmentation, label_branches
+from .surface import Surface, clean_surface
+
+# Functions computed for the first eigenfunctions when nobody asks for a number.
+DEFAULT_FUNCTIONS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """What is known of a mesh after the heavy step; every level is read from it at once.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        The input.
+    surface : Surface
+        What of it was analyzed.
+    field : ScalarField
+    hierarchy : Hierarchy
+    warnings : tuple of str
+        Sentences for the user.
+    """
+
+    mesh: TriangleMesh
+    surface: Surface
+    field: ScalarField
+    hierarchy: Hierarchy
+    warnings: tuple[str, ...]
+    _links: Links
+    _arc_of_vertex: tuple[Ints, ...]
+    _known_basis: Eigenbasis | None = field(repr=False)
+
+    @property
+    def net(self) -> Net:
+        """The triangles the field is linear on."""
+        return self.field.net
+
+    @cached_property
+    def eigenbasis(self) -> Eigenbasis:
+        """The eigenfunctions the field was made of; computed when first asked for if the field is the user's."""
+        if self._known_basis is not None:
+            return self._known_basis
+        return solve_on_surface(self.surface, min(DEFAULT_FUNCTIONS, _n_available(self.surface, "neumann")))
+
+    @cached_property
+    def complex(self) -> CriticalPoints:
+        """The critical points of the field."""
+        values = self.field.values
+        return critical_points(values, rank_vertices(values), self._links)
+
+    def branches(self, face_of_triangle: Ints | None = None) -> tuple[Branches, ...]:
+        """Return the faces of every arc, one table for each tree of the hierarchy.
+
+        Parameters
+        ----------
+        face_of_triangle : (T,) int64, optional
+            The polygon each triangle of the input belongs to; the triangles themselves if None.
+        """
+        if face_of_triangle is None:
+            return self._triangle_branches
+        return self._branches_of(np.asarray(face_of_triangle, dtype=np.int64))
+
+    @cached_property
+    def _triangle_branches(self) -> tuple[Branches, ...]:
+        return self._branches_of(np.arange(len(self.mesh.triangles)))
+
+    def _branches_of(self, face_of_triangle: Ints) -> tuple[Branches, ...]:
+        graph = face_graph(self.mesh, self.surface, face_of_triangle)
+        face = face_of_triangle[self.surface.input_triangle][self.net.triangle_of_surface]
+        found = []
+        for tree, arc in zip(self.hierarchy.trees, self._arc_of_vertex, strict=True):
+            rising = -self.field.values if tree.is_of_maxima else self.field.values
+            found.append(build_branches(tree.parent, arc_areas(rising, arc, tree, self.net, face), graph))
+        return tuple(found)
+
+    def segment(
+        self, *, level: int | None = None, threshold: float | None = None, n_parts: int | None = None
+    ) -> Segmentation:
+        """Divide the mesh into parts.
+
+        Parameters
+        ----------
+        level : int, optional
+            How many of the most persistent features to keep, from 0 to ``hierarchy.n_levels - 1``.
+        threshold : float, optional
+            Least persistence of a feature, as a fraction of the field's range.
+        n_parts : int, optional
+            How many labels, the body included.
+
+        Returns
+        -------
+        Segmentation
+            At the default level if none of the three is given.
+
+        Raises
+        ------
+        LevelError
+            If there is no such level, or more than one of the three is given.
+        """
+        branches = self.branches()
+        labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts)
+        of_faces = labels.of_faces(tuple(pieces.of_face for pieces in branches))
+        return Segmentation(of_faces, labels.parts, labels.level, labels.warnings)
+
+
+def analyze(
+    mesh: TriangleMesh,
+    *,
+    field: str | int | ArrayLike = "diffusion",
+    n_functions: int | None = None,
+    order: int | str = "auto",
+    boundary: str = "neumann",
+    progress: Progress | None = None,
+) -> Analysis:
+    """Compute a field on the mesh and the hierarchy of its features.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        Any mesh; its largest component is analyzed.
+    field : "diffusion", int or (V,) array
+        The auto diffusion function, the eigenfunction of that number (from 1), or the user's own values.
+    n_functions : int, optional
+        Eigenfunctions to compute; 30 for "diffusion", otherwise 12 or as many as needed.
+    order : 1, 2, 3 or "auto"
+        Degree of the finite elements; "auto" takes cubic ones as long as they are cheap.
+    boundary : "neumann" or "dirichlet"
+    progress : callable, optional
+        ``progress(fraction, text)``; may raise :class:`Cancelled`.
+
+    Raises
+    ------
+    EngineError
+        With a sentence that says what is wrong with the mesh, the field or the numbers asked for.
+    """
+    progress = progress or silent
+    progress(0.0, "Checking the mesh")
+    surface = clean_surface(mesh)
+    chosen = _field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
+    progress(0.8, "Finding the features")
+    values, net = chosen.field.values, chosen.field.net
+    links = links_of(net.triangles, len(net.positions))
+    progress(0.9, "Ordering the features")
+    hierarchy, arcs = build_hierarchy(
+        values, links, minima_are_features=chosen.field.minima_are_features, least_range=chosen.field.least_range
+    )
+    progress(1.0, "Done")
+    warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
+    return Analysis(mesh, surface, chosen.field, hierarchy, warnings, links, arcs, chosen.basis)
+
+
+@dataclass(frozen=True, eq=False)
+class _ChosenField:
+    field: ScalarField
+    basis: Eigenbasis | None
+    warnings: tuple[str, ...] = ()
+
+
+def _field(
+    surface: Surface,
+    choice: str | int | ArrayLike,
+    n_functions: int | None,
+    order: int | str,
+    boundary: str,
+    progress: Progress,
+) -> _ChosenField:
+    if isinstance(choice, str):
+        if choice != "diffusion":
+            raise FieldError(f'The field "{choice}" does not exist; use "diffusion", a number or values of your own.')
+        n_functions = n_functions or min(DIFFUSION_FUNCTIONS, _n_available(surface, boundary))
+    elif isinstance(choice, int | np.integer):
+        n_functions = max(n_functions or min(DEFAULT_FUNCTIONS, _n_available(surface, boundary)), int(choice))
+    else:
+        return _ChosenField(user_field(surface, choice), None)
+    order, warnings = _resolved_order(surface, order)
+    basis = solve_on_surface(surface, n_functions, order=order, boundary=boundary, progress=progress)
+    scalar_field = diffusion_field(basis) if isinstance(choice, str) else eigenfunction_field(basis, int(choice))
+    return _ChosenField(scalar_field, basis, warnings)
+
+
+def _n_available(surface: Surface, boundary: str) -> int:
+    """Return a number of functions that elements of every order carry, one at least."""
+    edges = surface.mesh.edges
+    n_vertices = len(np.unique(surface.mesh.triangles))
+    n_held = len(np.unique(edges.vertices[edges.n_triangles == 1])) if boundary == "dirichlet" else 1
+    return max(n_vertices - n_held, 1)
+
+
+def _resolved_order(surface: Surface, order: int | str) -> tuple[int, tuple[str, ...]]:
+    if isinstance(order, str):
+        if order != "auto":
+            raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')
+        n_triangles = len(surface.mesh.triangles)
+        order = 3 if n_triangles <= 80_000 else 2 if n_triangles <= 200_000 else 1
+        return order, (() if order == 3 else (f"The mesh is large: elements of order {order} instead of 3 were used.",))
+    return order, ()
+
+
+def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:
+    warnings = []
+    if surface.n_components > 1:
+        warnings.append(
+            f"The mesh has {surface.n_components} loose parts; the largest was analyzed, the others follow what is"
+            " next to them."
+        )
+    if hierarchy.n_levels == 1:
+        warnings.append("The shape has no features: it is one part.")
+    return warnings

@@ -1,0 +1,85 @@
+"""Merge trees: how the components of the sublevel sets are born at minima and merge at saddles.
+
+Everything here sweeps upwards over a rank. The tree of the superlevel sets (maxima) is the same with the rank reversed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mesh import Ints
+from .critical_points import Sectors, merging_sectors
+from .links import Links
+
+
+@dataclass(frozen=True, eq=False)
+class MergeTree:
+    """All merges of a sweep; a component carries the name of its oldest minimum.
+
+    Attributes
+    ----------
+    rank : (n,) int64
+        The order of the sweep.
+    basin : (n,) int64
+        The minimum that a descending path from each vertex ends in.
+    extremum, saddle, elder : (p,) int64
+        The pairs in the order of the sweep: at ``saddle`` the component of ``extremum`` ends and that of ``elder``
+        goes on.
+    roots : (r,) int64
+        The minima that are in no pair, one for each component of the net.
+    sectors : Sectors
+        The vertices with several lower components, whether components merge there or a handle closes.
+    """
+
+    rank: Ints
+    basin: Ints
+    extremum: Ints
+    saddle: Ints
+    elder: Ints
+    roots: Ints
+    sectors: Sectors
+
+
+def merge_tree(rank: Ints, links: Links) -> MergeTree:
+    """Sweep the net upwards and pair each minimum with the saddle that ends it (0-dimensional persistence)."""
+    basin = _basins(rank, links)
+    sectors = merging_sectors(rank, links)
+    extremum, saddle, elder = _elder_rule(rank, sectors, basin)
+    minima = links.vertex[basin[links.vertex] == links.vertex]
+    return MergeTree(rank, basin, extremum, saddle, elder, np.setdiff1d(minima, extremum), sectors)
+
+
+def _basins(rank: Ints, links: Links) -> Ints:
+    """Follow the lowest neighbours of all vertices at once down to the minima."""
+    lowest = np.minimum.reduceat(np.minimum(rank[links.ahead], rank[links.behind]), links.start)
+    vertex_at_rank = np.argsort(rank)
+    target = np.arange(links.n_vertices)
+    goes_down = lowest < rank[links.vertex]
+    target[links.vertex[goes_down]] = vertex_at_rank[lowest[goes_down]]
+    while not np.array_equal(target, further := target[target]):
+        target = further
+    return target
+
+
+def _elder_rule(rank: Ints, sectors: Sectors, basin: Ints) -> tuple[Ints, Ints, Ints]:
+    """Join the components at each saddle; the younger one (with the higher minimum) is paired and ends."""
+    oldest: dict[int, int] = {}
+    height = rank.__getitem__
+
+    def component(minimum: int) -> int:
+        while (above := oldest.get(minimum, minimum)) != minimum:
+            oldest[minimum] = minimum = oldest.get(above, above)
+        return minimum
+
+    pairs: list[tuple[int, int, int]] = []
+    previous_saddle, previous_minimum = -1, -1
+    for saddle, minimum in zip(sectors.vertex.tolist(), basin[sectors.lowest].tolist(), strict=True):
+        if saddle == previous_saddle:
+            here, there = component(previous_minimum), component(minimum)
+            if here != there:
+                young, old = (here, there) if height(here) > height(there) else (there, here)
+                pairs.append((young, saddle, old))
+                oldest[young] = old
+        previous_saddle, previous_minimum = saddle, minimum
+    extremum, saddle_of, elder = np.array(pairs, dtype=np.int64).reshape(-1, 3).T
+    return extremum, saddle_of, elder

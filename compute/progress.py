@@ -1,0 +1,22 @@
+"""How long work tells where it is, and how it is stopped.
+
+A progress callback is any ``progress(fraction, text)``. Stages call it often, the fraction never falls, and the
+callback may raise :class:`~compute.errors.Cancelled`, which stages let through untouched.
+"""
+
+from collections.abc import Callable
+
+Progress = Callable[[float, str], None]
+
+
+def silent(fraction: float, text: str) -> None:
+    """Tell nobody."""
+
+
+def section(progress: Progress, start: float, stop: float) -> Progress:
+    """Return a callback whose 0..1 is ``start``..``stop`` of the given one."""
+
+    def report(fraction: float, text: str) -> None:
+        progress(start + (stop - start) * min(max(fraction, 0.0), 1.0), text)
+
+    return report

@@ -1,0 +1,148 @@
+"""Branches: connected pieces of the arcs on the faces of the input, what every level is labelled by."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from ..mesh import Bools, Floats, Ints
+from .arc_areas import ArcAreas
+from .faces import FaceGraph
+
+
+@dataclass(frozen=True, eq=False)
+class Branches:
+    """The faces of every arc, in connected pieces; B branches.
+
+    Attributes
+    ----------
+    of_face : (F,) int32
+        The branch of each face.
+    arc : (B,) int64
+        The arc of the tree that each branch is a piece of.
+    area : (B,) float64
+        In the mesh's unit of length, squared.
+    n_faces : (B,) int64
+    borders : (P, 2) int64
+        Pairs of branches that touch, each once.
+    border_length : (P,) float64
+    """
+
+    of_face: NDArray[np.int32]
+    arc: Ints
+    area: Floats
+    n_faces: Ints
+    borders: Ints
+    border_length: Floats
+
+
+def build_branches(parent: Ints, shares: ArcAreas, graph: FaceGraph) -> Branches:
+    """Give each face the deepest arc of which it has the greater half, and number the connected pieces.
+
+    A face lies in a part if and only if more than half of its area does, at every level at once: the subtrees that
+    hold more than half of a face are nested, and the face is given to the innermost.
+    """
+    arc_of_face = _majority_arc(parent, shares, len(graph.area))[graph.stands_for]
+    left, right = graph.neighbours.T
+    same = arc_of_face[left] == arc_of_face[right]
+    branch_of_face = _pieces(graph, same)[graph.stands_for]
+    _, first, branch_of_face = np.unique(branch_of_face, return_index=True, return_inverse=True)
+    branch_of_face = branch_of_face.reshape(-1)
+    borders, length = _sum_pairs(branch_of_face[graph.neighbours[~same]], graph.length[~same], len(first))
+    return Branches(
+        branch_of_face.astype(np.int32),
+        arc_of_face[first],
+        np.bincount(branch_of_face, graph.area),
+        np.bincount(branch_of_face),
+        borders,
+        length,
+    )
+
+
+def repaired_labels(labels: Ints, branches: Branches) -> Ints:
+    """Make every part connected: its largest piece stays, the others join the neighbour they share most border with.
+
+    Parameters
+    ----------
+    labels : (B,) int64
+        Label of each branch, 0 for the body, which may be in pieces.
+    """
+    labels = labels.copy()
+    # A piece may join another stray piece, so this is repeated; every round leaves fewer pieces.
+    for _ in range(len(labels)):
+        piece, is_stray = _stray_pieces(labels, branches)
+        joined = _best_neighbour(labels, piece, is_stray, branches)
+        if not len(joined[0]):
+            break
+        labels[joined[0]] = joined[1]
+    return labels
+
+
+def _majority_arc(parent: Ints, shares: ArcAreas, n_faces: int) -> Ints:
+    """Return for each face the innermost arc whose subtree holds more than half of it; -1 for faces without shares."""
+    arc_of_face = np.full(n_faces, -1)
+    half = np.bincount(shares.face, shares.area, n_faces) / 2
+    face, arc, area = shares.face, shares.arc, shares.area
+    while len(face):
+        (face, arc), area = _sum_rows(face, arc, area, len(parent))
+        # The arc of smallest index has nothing of the face above it any more: the face is its, or it is pushed down.
+        innermost = np.append(True, face[1:] != face[:-1])
+        decided = innermost & ((area > half[face]) | (half[face] == 0) | (parent[arc] < 0))
+        arc_of_face[face[decided]] = arc[decided]
+        open_rows = arc_of_face[face] < 0
+        arc = np.where(innermost, parent[arc], arc)[open_rows]
+        face, area = face[open_rows], area[open_rows]
+    return arc_of_face
+
+
+def _sum_rows(face: Ints, arc: Ints, area: Floats, n_arcs: int) -> tuple[tuple[Ints, Ints], Floats]:
+    keys, row = np.unique(face * n_arcs + arc, return_inverse=True)
+    return (keys // n_arcs, keys % n_arcs), np.bincount(row.reshape(-1), area)
+
+
+def _sum_pairs(pairs: Ints, weight: Floats, n: int) -> tuple[Ints, Floats]:
+    keys, row = np.unique(pairs.min(axis=1) * n + pairs.max(axis=1), return_inverse=True)
+    return np.stack([keys // n, keys % n], axis=1), np.bincount(row.reshape(-1), weight, len(keys))
+
+
+def _pieces(graph: FaceGraph, same: Bools) -> Ints:
+    left, right = graph.neighbours[same].T
+    n_faces = len(graph.area)
+    joined = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n_faces, n_faces))
+    return connected_components(joined, directed=False)[1]
+
+
+def _stray_pieces(labels: Ints, branches: Branches) -> tuple[Ints, Bools]:
+    """Return the connected piece of each branch among those of its label, and which pieces are not the largest."""
+    left, right = branches.borders[labels[branches.borders[:, 0]] == labels[branches.borders[:, 1]]].T
+    n = len(labels)
+    joined = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n, n))
+    n_pieces, piece = connected_components(joined, directed=False)
+    area = np.bincount(piece, branches.area, n_pieces)
+    label = np.zeros(n_pieces, dtype=np.int64)
+    label[piece] = labels
+    order = np.lexsort((area, label))
+    is_largest = np.append(label[order][1:] != label[order][:-1], True)
+    is_stray = np.zeros(n_pieces, dtype=bool)
+    is_stray[order[~is_largest]] = True
+    return piece, is_stray & (label > 0)
+
+
+def _best_neighbour(labels: Ints, piece: Ints, is_stray: Bools, branches: Branches) -> tuple[Ints, Ints]:
+    """Return the branches of stray pieces that have neighbours, and the label each is to take."""
+    sides = np.concatenate([branches.borders, branches.borders[:, ::-1]])
+    length = np.tile(branches.border_length, 2)
+    outward = is_stray[piece[sides[:, 0]]] & (labels[sides[:, 0]] != labels[sides[:, 1]])
+    n_labels = int(labels.max(initial=0)) + 1
+    (stray, label), total = _sum_rows(
+        piece[sides[outward, 0]], labels[sides[outward, 1]], length[outward], n_labels
+    )
+    # For each piece the row with the longest border; the smaller label among equals.
+    order = np.lexsort((-label, total, stray))
+    best = order[np.append(stray[order][1:] != stray[order][:-1], True)] if len(order) else order
+    label_of_piece = np.full(len(is_stray), -1)
+    label_of_piece[stray[best]] = label[best]
+    moved = np.flatnonzero(label_of_piece[piece] >= 0)
+    return moved, label_of_piece[piece[moved]]

@@ -1,0 +1,176 @@
+"""Parts of a level: labels for the faces and a table of what they are."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LevelError
+from ..mesh import Floats, Ints
+from .branches import Branches, repaired_labels
+from .hierarchy import Hierarchy
+
+BODY = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """The parts of a segmentation, one row each, the body first if it has faces.
+
+    Attributes
+    ----------
+    id : (P,) int64
+        Label of the part; 0 is the body. A part has the same id at every level.
+    parent : (P,) int64
+        Id of the part it belongs to.
+    extremum, saddle : (P,) int64
+        Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body.
+    area : (P,) float64
+        In the mesh's unit of length, squared.
+    n_triangles : (P,) int64
+        How many faces carry the label.
+    """
+
+    id: Ints
+    parent: Ints
+    extremum: Ints
+    saddle: Ints
+    area: Floats
+    n_triangles: Ints
+
+    def __len__(self) -> int:
+        return len(self.id)
+
+
+@dataclass(frozen=True, eq=False)
+class BranchLabels:
+    """A level as labels of branches: what is left to do for the faces is a look-up.
+
+    Attributes
+    ----------
+    level : int
+    of_branch : tuple of (B,) int64
+        For each tree, the part of each branch; 0 where the branch is in none.
+    parts : Parts
+    warnings : tuple of str
+    """
+
+    level: int
+    of_branch: tuple[Ints, ...]
+    parts: Parts
+    warnings: tuple[str, ...] = ()
+
+    def of_faces(self, branch_of_face: tuple[NDArray[np.int32], ...]) -> NDArray[np.int32]:
+        """Return the label of each face from its branch in each tree."""
+        tables = [labels.astype(np.int32) for labels in self.of_branch]
+        labels = tables[0][branch_of_face[0]]
+        for table, branch in zip(tables[1:], branch_of_face[1:], strict=True):
+            labels = np.where(labels == BODY, table[branch], labels)
+        return labels
+
+
+@dataclass(frozen=True, eq=False)
+class Segmentation:
+    """The faces of a mesh divided into parts.
+
+    Attributes
+    ----------
+    labels : (T,) int32
+        Part of each triangle of the input; 0 is the body.
+    parts : Parts
+    level : int
+    warnings : tuple of str
+        Sentences for the user, such as that a number of parts could not be reached.
+    """
+
+    labels: NDArray[np.int32]
+    parts: Parts
+    level: int
+    warnings: tuple[str, ...] = ()
+
+    @cached_property
+    def n_parts(self) -> int:
+        """Number of different labels, the body included if it has faces."""
+        return len(self.parts)
+
+
+def label_branches(
+    hierarchy: Hierarchy,
+    branches: tuple[Branches, ...],
+    *,
+    level: int | None = None,
+    threshold: float | None = None,
+    n_parts: int | None = None,
+) -> BranchLabels:
+    """Label the branches at one level.
+
+    Parameters
+    ----------
+    hierarchy : Hierarchy
+    branches : tuple of Branches
+        One for each tree of the hierarchy.
+    level : int, optional
+        From 0 (all is body) to ``hierarchy.n_levels - 1``.
+    threshold : float, optional
+        Least persistence of a part, as a fraction of the field's range.
+    n_parts : int, optional
+        Number of labels, the body included; where it cannot be reached, the largest below it.
+
+    Raises
+    ------
+    LevelError
+        If the level does not exist, or more than one of the three is given.
+    """
+    if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
+        raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
+    if n_parts is not None:
+        return _reach_number(hierarchy, branches, n_parts)
+    if level is None:
+        level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
+    return _at_level(hierarchy, branches, hierarchy.checked_level(level))
+
+
+def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int) -> BranchLabels:
+    of_branch = tuple(
+        repaired_labels(tree.part_of_arc(level)[pieces.arc], pieces)
+        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
+    )
+    return BranchLabels(level, of_branch, _tabulate(hierarchy, branches, level, of_branch))
+
+
+def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts: int) -> BranchLabels:
+    """Return the lowest level with that many labels, or with the most below it."""
+    if n_parts < 1:
+        raise LevelError(f"The number of parts is at least 1, not {n_parts}.")
+    best = _at_level(hierarchy, branches, 0)
+    # A level more adds one part, or three where it is the first with both kinds of extrema.
+    for level in range(max(1, n_parts - 3), hierarchy.n_levels):
+        labels = _at_level(hierarchy, branches, level)
+        if len(labels.parts) > n_parts:
+            break
+        if len(labels.parts) > len(best.parts):
+            best = labels
+    if len(best.parts) == n_parts:
+        return best
+    warning = f"This shape cannot be divided into exactly {n_parts} parts; it has {len(best.parts)} now."
+    return BranchLabels(best.level, best.of_branch, best.parts, (warning,))
+
+
+def _tabulate(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, of_branch: tuple[Ints, ...]) -> Parts:
+    n_labels = 1 + max(int(labels.max(initial=0)) for labels in of_branch)
+    area, n_faces = np.zeros(n_labels), np.zeros(n_labels, dtype=np.int64)
+    extremum, saddle = np.full(n_labels, -1), np.full(n_labels, -1)
+    for tree, pieces, labels in zip(hierarchy.trees, branches, of_branch, strict=True):
+        area += np.bincount(labels, pieces.area, n_labels)
+        n_faces += np.bincount(labels, pieces.n_faces, n_labels).astype(np.int64)
+        roots = np.flatnonzero(tree.is_part_root(level) & (tree.part < n_labels))
+        extremum[tree.part[roots]], saddle[tree.part[roots]] = tree.extremum[roots], tree.saddle[roots]
+    # Every tree counts as body what belongs to the parts of the other.
+    n_trees = len(branches)
+    area[BODY] = branches[0].area.sum() - area[1:].sum()
+    n_faces[BODY] = branches[0].n_faces.sum() - n_faces[1:].sum()
+    if n_trees and n_faces[BODY] == 0:
+        area[BODY] = 0.0
+    ids = np.flatnonzero(n_faces > 0)
+    return Parts(ids, np.zeros(len(ids), dtype=np.int64), extremum[ids], saddle[ids], area[ids], n_faces[ids])
