@@ -1,6 +1,7 @@
 """The heavy step: from a mesh to everything that levels and parts are read from."""
 
-from dataclasses import dataclass, field
+import dataclasses
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -47,7 +48,7 @@ class Analysis:
     warnings: tuple[str, ...]
     _links: Links
     _arc_of_vertex: tuple[Ints, ...]
-    _known_basis: Eigenbasis | None = field(repr=False)
+    _known_basis: Eigenbasis | None = dataclasses.field(repr=False)
 
     @property
     def net(self) -> Net:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,7 +88,7 @@ class TriangleMesh:
 
     @cached_property
     def component_of_triangle(self) -> Ints:
-        """(T,) the component of each triangle, numbered by falling area; triangles that share a vertex are connected."""
+        """(T,) the component of each triangle, numbered by falling area; a shared vertex connects."""
         corners = self.triangles
         n_vertices = len(self.vertices)
         sides = np.concatenate([corners[:, :2], corners[:, 1:]])
@@ -112,9 +113,9 @@ def edges_of(triangles: Ints, n_vertices: int) -> Edges:
     return Edges(ends, edge.reshape(-1, 3), count)
 
 
-def _as_rows(values: ArrayLike, dtype: type, name: str) -> NDArray:
+def _as_rows(values: ArrayLike, dtype: type, name: str) -> NDArray[Any]:
     try:
-        rows = np.ascontiguousarray(np.asarray(values).astype(dtype, casting="same_kind"))
+        rows: NDArray[Any] = np.ascontiguousarray(np.asarray(values).astype(dtype, casting="same_kind"))
     except (TypeError, ValueError) as error:
         raise MeshError(f"The {name} must be an array of numbers of shape (n, 3).") from error
     if rows.ndim != 2 or rows.shape[1] != 3:

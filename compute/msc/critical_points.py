@@ -135,10 +135,8 @@ def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, I
     key_ahead, key_behind = corner * n + rank[ahead], corner * n + rank[behind]
     keys = np.unique(np.concatenate([key_ahead[low_ahead], key_behind[low_behind]]))
     is_edge = low_ahead & low_behind
-    joined = coo_array(
-        (np.ones(is_edge.sum(), dtype=bool), (keys.searchsorted(key_ahead[is_edge]), keys.searchsorted(key_behind[is_edge]))),
-        shape=(len(keys), len(keys)),
-    )
+    ends = keys.searchsorted(key_ahead[is_edge]), keys.searchsorted(key_behind[is_edge])
+    joined = coo_array((np.ones(len(ends[0]), dtype=bool), ends), shape=(len(keys), len(keys)))
     _, component = connected_components(joined, directed=False)
     is_first = np.zeros(len(keys), dtype=bool)
     is_first[np.unique(component, return_index=True)[1]] = True

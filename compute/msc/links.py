@@ -77,7 +77,6 @@ def links_of(triangles: Ints, n_vertices: int) -> Links:
     rows = by_vertex.data
     n_rows = np.diff(by_vertex.indptr)
     vertex = np.flatnonzero(n_rows)
-    ahead, behind = (np.roll(triangles, -shift, axis=1).ravel()[rows] for shift in (1, 2))
-    return Links(
-        triangles, n_vertices, vertex, by_vertex.indptr[:-1][vertex].astype(np.int64), triangles.ravel()[rows], ahead, behind
-    )
+    start = by_vertex.indptr[:-1][vertex].astype(np.int64)
+    corner, ahead, behind = (np.roll(triangles, -shift, axis=1).ravel()[rows] for shift in (0, 1, 2))
+    return Links(triangles, n_vertices, vertex, start, corner, ahead, behind)

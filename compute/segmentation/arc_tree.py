@@ -51,11 +51,11 @@ class ArcTree:
         return inside
 
     def is_part_root(self, level: int) -> Bools:
-        """(A,) the arcs that are the whole parts of a level: closed by a surviving saddle, with none inside."""
+        """Tell which arcs (A,) are whole parts of a level: closed by a surviving saddle, with none inside."""
         return (self.closing < level) & (self.closing_inside >= level)
 
     def part_of_arc(self, level: int) -> Ints:
-        """(A,) the part each arc belongs to at a level, 0 for the body."""
+        """Return the part (A,) each arc belongs to at a level, 0 for the body."""
         part = np.where(self.is_part_root(level), self.part, 0)
         for arc in range(len(part) - 1, -1, -1):
             if part[arc] == 0 and self.parent[arc] >= 0:
@@ -212,4 +212,3 @@ class _Growth:
 
     def _close(self, arc: int, parent: int, saddle: int, closing: int) -> None:
         self._parent[arc], self._saddle[arc], self._closing[arc] = parent, saddle, closing
-

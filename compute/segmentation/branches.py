@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..mesh import Bools, Floats, Ints
 from .arc_areas import ArcAreas
-from .faces import FaceGraph
+from .faces import FaceGraph, sum_by
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ def build_branches(parent: Ints, shares: ArcAreas, graph: FaceGraph) -> Branches
     return Branches(
         branch_of_face.astype(np.int32),
         arc_of_face[first],
-        np.bincount(branch_of_face, graph.area),
+        sum_by(branch_of_face, graph.area),
         np.bincount(branch_of_face),
         borders,
         length,
@@ -83,7 +83,7 @@ def repaired_labels(labels: Ints, branches: Branches) -> Ints:
 def _majority_arc(parent: Ints, shares: ArcAreas, n_faces: int) -> Ints:
     """Return for each face the innermost arc whose subtree holds more than half of it; -1 for faces without shares."""
     arc_of_face = np.full(n_faces, -1)
-    half = np.bincount(shares.face, shares.area, n_faces) / 2
+    half = sum_by(shares.face, shares.area, n_faces) / 2
     face, arc, area = shares.face, shares.arc, shares.area
     while len(face):
         (face, arc), area = _sum_rows(face, arc, area, len(parent))
@@ -99,12 +99,12 @@ def _majority_arc(parent: Ints, shares: ArcAreas, n_faces: int) -> Ints:
 
 def _sum_rows(face: Ints, arc: Ints, area: Floats, n_arcs: int) -> tuple[tuple[Ints, Ints], Floats]:
     keys, row = np.unique(face * n_arcs + arc, return_inverse=True)
-    return (keys // n_arcs, keys % n_arcs), np.bincount(row.reshape(-1), area)
+    return (keys // n_arcs, keys % n_arcs), sum_by(row.reshape(-1), area)
 
 
 def _sum_pairs(pairs: Ints, weight: Floats, n: int) -> tuple[Ints, Floats]:
     keys, row = np.unique(pairs.min(axis=1) * n + pairs.max(axis=1), return_inverse=True)
-    return np.stack([keys // n, keys % n], axis=1), np.bincount(row.reshape(-1), weight, len(keys))
+    return np.stack([keys // n, keys % n], axis=1), sum_by(row.reshape(-1), weight, len(keys))
 
 
 def _pieces(graph: FaceGraph, same: Bools) -> Ints:
@@ -120,7 +120,7 @@ def _stray_pieces(labels: Ints, branches: Branches) -> tuple[Ints, Bools]:
     n = len(labels)
     joined = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n, n))
     n_pieces, piece = connected_components(joined, directed=False)
-    area = np.bincount(piece, branches.area, n_pieces)
+    area = sum_by(piece, branches.area, n_pieces)
     label = np.zeros(n_pieces, dtype=np.int64)
     label[piece] = labels
     order = np.lexsort((area, label))
@@ -136,9 +136,7 @@ def _best_neighbour(labels: Ints, piece: Ints, is_stray: Bools, branches: Branch
     length = np.tile(branches.border_length, 2)
     outward = is_stray[piece[sides[:, 0]]] & (labels[sides[:, 0]] != labels[sides[:, 1]])
     n_labels = int(labels.max(initial=0)) + 1
-    (stray, label), total = _sum_rows(
-        piece[sides[outward, 0]], labels[sides[outward, 1]], length[outward], n_labels
-    )
+    (stray, label), total = _sum_rows(piece[sides[outward, 0]], labels[sides[outward, 1]], length[outward], n_labels)
     # For each piece the row with the longest border; the smaller label among equals.
     order = np.lexsort((-label, total, stray))
     best = order[np.append(stray[order][1:] != stray[order][:-1], True)] if len(order) else order

@@ -30,6 +30,11 @@ class FaceGraph:
     length: Floats
 
 
+def sum_by(index: Ints, weight: Floats, size: int = 0) -> Floats:
+    """Return the sum of the weights at each index, of at least the given size."""
+    return np.asarray(np.bincount(index, weight, size), dtype=np.float64)
+
+
 def face_graph(mesh: TriangleMesh, surface: Surface, face_of_triangle: Ints) -> FaceGraph:
     """Return the graph of the faces of an input mesh.
 
@@ -42,7 +47,7 @@ def face_graph(mesh: TriangleMesh, surface: Surface, face_of_triangle: Ints) -> 
     face_of_triangle : (T,) int64
         The polygon each triangle belongs to; every polygon from 0 on has triangles.
     """
-    area = np.bincount(face_of_triangle, mesh.areas)
+    area = sum_by(face_of_triangle, mesh.areas)
     face_of_surface = face_of_triangle[surface.input_triangle]
     stands_for = np.arange(len(area))
     # A face that is not analyzed lies nearest to its first triangle's nearest one.

@@ -118,7 +118,9 @@ def _pairs_by_persistence(values: Floats, sweeps: list[_Sweep]) -> tuple[Ints, F
     return pairs[order], persistence[order], is_maximum[order]
 
 
-def _grow_trees(sweeps: list[_Sweep], features: Ints, is_maximum: Bools) -> tuple[tuple[ArcTree, ...], tuple[Ints, ...]]:
+def _grow_trees(
+    sweeps: list[_Sweep], features: Ints, is_maximum: Bools
+) -> tuple[tuple[ArcTree, ...], tuple[Ints, ...]]:
     """Build the arc tree of each sweep; ``features`` are the pairs above the noise, by falling persistence."""
     roots = [extremum for sweep in sweeps for extremum in sweep.tree.roots.tolist()]
     part = {extremum: number for number, extremum in enumerate([*roots, *features[:, 0].tolist()], start=1)}

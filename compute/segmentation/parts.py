@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..errors import LevelError
 from ..mesh import Floats, Ints
 from .branches import Branches, repaired_labels
+from .faces import sum_by
 from .hierarchy import Hierarchy
 
 BODY = 0
@@ -162,8 +163,8 @@ def _tabulate(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, 
     area, n_faces = np.zeros(n_labels), np.zeros(n_labels, dtype=np.int64)
     extremum, saddle = np.full(n_labels, -1), np.full(n_labels, -1)
     for tree, pieces, labels in zip(hierarchy.trees, branches, of_branch, strict=True):
-        area += np.bincount(labels, pieces.area, n_labels)
-        n_faces += np.bincount(labels, pieces.n_faces, n_labels).astype(np.int64)
+        area += sum_by(labels, pieces.area, n_labels)
+        n_faces += sum_by(labels, pieces.n_faces.astype(float), n_labels).astype(np.int64)
         roots = np.flatnonzero(tree.is_part_root(level) & (tree.part < n_labels))
         extremum[tree.part[roots]], saddle[tree.part[roots]] = tree.extremum[roots], tree.saddle[roots]
     # Every tree counts as body what belongs to the parts of the other.
