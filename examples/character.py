@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from .magnifier import Magnifier
+from .magnifier import Magnifiers
 from .rig import Bone, Pose, bone_motions
 from .skinning import blend_skinning, diffused_weights
 from .solids import Body
@@ -32,7 +32,7 @@ class Plan:
         The first is "rest".
     part_of_bone, fine_part_of_bone : mapping of bone name to part name
         The true parts, coarse and fine.
-    magnifier : Magnifier
+    magnifiers : Magnifiers
         Where the mesh is finer.
     """
 
@@ -42,7 +42,7 @@ class Plan:
     poses: Mapping[str, Pose]
     part_of_bone: Mapping[str, str]
     fine_part_of_bone: Mapping[str, str]
-    magnifier: Magnifier = Magnifier()
+    magnifiers: Magnifiers = Magnifiers()
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +130,7 @@ def build(plan: Plan, n_vertices: int) -> Character:
     ValueError
         If the plan has parts too thin for that few vertices.
     """
-    mesh = mesh_body(plan.body, n_vertices, plan.magnifier)
+    mesh = mesh_body(plan.body, n_vertices, plan.magnifiers)
     number = {bone.name: i for i, bone in enumerate(plan.bones)}
     nearest, radius = plan.body.nearest_solid(mesh.vertices)
     bone_of_vertex = np.array([number[solid.bone] for solid in plan.body.solids])[nearest]

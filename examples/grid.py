@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .magnifier import Magnifier
+from .magnifier import Magnifiers
 from .solids import Body
 
 Floats = NDArray[np.float64]
@@ -45,18 +45,23 @@ class Grid:
     values: NDArray[np.float32]
 
 
-def sample(body: Body, cell: float, magnifier: Magnifier) -> Grid:
+def sample(body: Body, cell: float, magnifiers: Magnifiers) -> Grid:
     """Return the distances on a grid over the magnified body, exact near its surface, of the right sign elsewhere."""
-    origin, blocks = _layout(magnifier.magnified_bounds(body), cell)
+    origin, blocks = _layout(magnified_bounds(body, magnifiers), cell)
     corners = BLOCK * _lattice(*blocks)
-    fillet = max(solid.blend for solid in body.solids)
-    coarse, _ = body.distance(magnifier.shrunk(origin + cell * (corners + 0.5 * (BLOCK - 1))))
-    reached = np.abs(coarse) < 0.5 * np.sqrt(3.0) * BLOCK * cell + fillet
+    coarse, _ = body.distance(magnifiers.shrunk(origin + cell * (corners + 0.5 * (BLOCK - 1))))
+    reached = np.abs(coarse) < 0.5 * np.sqrt(3.0) * BLOCK * cell + body.widest_blend
     points = origin + cell * (corners[reached][:, None] + _lattice(BLOCK, BLOCK, BLOCK))
-    fine, _ = body.distance(magnifier.shrunk(points.reshape(-1, 3)), 2.0 * cell + fillet)
+    fine, _ = body.distance(magnifiers.shrunk(points.reshape(-1, 3)), 2.0 * cell + body.widest_blend)
     values = np.repeat(coarse[:, None].astype(np.float32), BLOCK**3, axis=1)
     values[reached] = fine.reshape(-1, BLOCK**3)
     return Grid(origin, cell, _joined(values, blocks))
+
+
+def magnified_bounds(body: Body, magnifiers: Magnifiers) -> Floats:
+    """(2, 3) lower and upper corner of a box around the magnified body."""
+    corners = magnifiers.magnified(body.box_corners)
+    return np.stack([corners.min(axis=0), corners.max(axis=0)])
 
 
 def well_composed_inside(values: NDArray[np.float32]) -> Bools:

@@ -1,4 +1,4 @@
-"""Space stretched around the hands, so that a regular grid meshes them finer than the rest."""
+"""Space stretched around hands and faces, so that a regular grid meshes them finer than the rest."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,49 +6,48 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .solids import Body
-
 Floats = NDArray[np.float64]
+
+# The table of distances goes on to here, in metres: farther than any body reaches.
+FAR_AWAY = 1e3
 
 
 @dataclass(frozen=True)
 class Magnifier:
-    """A magnification of space that depends on the distance from the plane x = 0 and is the same on both sides.
+    """A magnification of space that grows with the distance from a coordinate plane, equally on both sides of it.
 
     Attributes
     ----------
+    axis : int
+        The normal of the plane: 0, 1 or 2.
     begin, full : float
         Distances from the plane between which it grows from 1 to ``factor``.
     factor : float
-        Magnification from ``full`` on; 1 leaves space as it is.
-    centre : (2,) float
-        The y and z that stay in place.
+        Magnification from ``full`` on.
+    centre : (3,) float
+        Across the axis, the line through this point stays in place.
     """
 
-    begin: float = 0.0
-    full: float = 1.0
-    factor: float = 1.0
-    centre: tuple[float, float] = (0.0, 0.0)
+    axis: int
+    begin: float
+    full: float
+    factor: float
+    centre: tuple[float, float, float]
 
     def magnified(self, points: Floats) -> Floats:
         """Return where points go, (n, 3)."""
-        distance = np.abs(points[:, 0])
-        across = self.centre + self._factor_at(distance)[:, None] * (points[:, 1:] - self.centre)
-        along = np.sign(points[:, 0]) * np.interp(distance, *self._table)
-        return np.column_stack([along, across])
+        along = points[:, self.axis]
+        moved = self.centre + self._factor_at(np.abs(along))[:, None] * (points - self.centre)
+        moved[:, self.axis] = np.sign(along) * np.interp(np.abs(along), *self._table)
+        return moved
 
     def shrunk(self, points: Floats) -> Floats:
         """Return where magnified points came from, (n, 3)."""
-        distance = np.interp(np.abs(points[:, 0]), *self._table[::-1])
-        across = self.centre + (points[:, 1:] - self.centre) / self._factor_at(distance)[:, None]
-        return np.column_stack([np.sign(points[:, 0]) * distance, across])
-
-    def magnified_bounds(self, body: Body) -> Floats:
-        """(2, 3) lower and upper corner of a box around the magnified body."""
-        boxes = np.array([solid.bounds for solid in body.solids])
-        corners = np.array(np.meshgrid(*3 * [[0, 1]])).reshape(3, -1).T
-        moved = self.magnified(boxes[:, corners, np.arange(3)].reshape(-1, 3))
-        return np.stack([moved.min(axis=0), moved.max(axis=0)])
+        along = points[:, self.axis]
+        distance = np.interp(np.abs(along), *self._table[::-1])
+        moved = self.centre + (points - self.centre) / self._factor_at(distance)[:, None]
+        moved[:, self.axis] = np.sign(along) * distance
+        return moved
 
     def _factor_at(self, distance: Floats) -> Floats:
         share = np.clip((distance - self.begin) / (self.full - self.begin), 0.0, 1.0)
@@ -56,9 +55,27 @@ class Magnifier:
 
     @cached_property
     def _table(self) -> tuple[Floats, Floats]:
-        """Distances before and after, finely spaced; the last interval reaches far beyond every body."""
+        """Distances before and after, finely spaced up to ``full``."""
         distance = np.linspace(0.0, self.full, 2001)
         factor = self._factor_at(distance)
-        steps = 0.5 * (factor[1:] + factor[:-1]) * np.diff(distance)
-        moved = np.concatenate([[0.0], np.cumsum(steps)])
-        return np.append(distance, self.full + 1e3), np.append(moved, moved[-1] + 1e3 * self.factor)
+        moved = np.concatenate([[0.0], np.cumsum(0.5 * (factor[1:] + factor[:-1]) * np.diff(distance))])
+        return np.append(distance, self.full + FAR_AWAY), np.append(moved, moved[-1] + self.factor * FAR_AWAY)
+
+
+@dataclass(frozen=True)
+class Magnifiers:
+    """Magnifications one after the other; none leaves space as it is."""
+
+    stages: tuple[Magnifier, ...] = ()
+
+    def magnified(self, points: Floats) -> Floats:
+        """Return where points go, (n, 3)."""
+        for stage in self.stages:
+            points = stage.magnified(points)
+        return points
+
+    def shrunk(self, points: Floats) -> Floats:
+        """Return where magnified points came from, (n, 3)."""
+        for stage in self.stages[::-1]:
+            points = stage.shrunk(points)
+        return points

@@ -38,8 +38,8 @@ class Pose:
     Attributes
     ----------
     angles : mapping of bone name to (3,) float
-        Degrees about the fixed x, then y, then z axis of the character at rest, about the bone's head; the parent's
-        motion comes on top. Bones that are not named stay as they are.
+        Degrees about the x, y and z axis of the character at rest, through the bone's head: first about z, then y, then
+        x, then moved with the parent. Bones that are not named stay as they are.
     shift : (3,) float
         How far the whole character is moved, in metres.
     """
@@ -104,9 +104,9 @@ def bone_motions(bones: tuple[Bone, ...], pose: Pose) -> Floats:
 
 
 def rotation_about(point: Point, degrees: Point) -> Floats:
-    """Return the (4, 4) rotation by angles about fixed axes through a point."""
+    """Return the (4, 4) rotation through a point by angles about the fixed axes, z first and x last."""
     motion = np.eye(4)
-    motion[:3, :3] = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
+    motion[:3, :3] = Rotation.from_euler("zyx", degrees[::-1], degrees=True).as_matrix()
     motion[:3, 3] = np.asarray(point) - motion[:3, :3] @ np.asarray(point)
     return motion
 

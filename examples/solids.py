@@ -110,10 +110,16 @@ class Body:
     symmetric: bool = True
 
     @property
-    def bounds(self) -> Floats:
-        """(2, 3) lower and upper corner of a box around it."""
+    def box_corners(self) -> Floats:
+        """(8 n, 3) the corners of boxes around the solids."""
         boxes = np.array([solid.bounds for solid in self.solids])
-        return np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+        corners = np.array(np.meshgrid(*3 * [[0, 1]])).reshape(3, -1).T
+        return boxes[:, corners, np.arange(3)].reshape(-1, 3)
+
+    @property
+    def widest_blend(self) -> float:
+        """The width of the widest fillet."""
+        return max(solid.blend for solid in self.solids)
 
     def distance(self, points: Floats, margin: float = FAR) -> tuple[Floats, Floats]:
         """Return the signed distance and its gradient.

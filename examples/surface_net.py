@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 
-from .grid import Grid, mixed_cells, sample, well_composed_inside
-from .magnifier import Magnifier
+from .grid import Grid, magnified_bounds, mixed_cells, sample, well_composed_inside
+from .magnifier import Magnifiers
 from .solids import FAR, Body
 
 Floats = NDArray[np.float64]
@@ -47,7 +47,7 @@ class QuadMesh:
     quads: Ints
 
 
-def mesh_body(body: Body, n_vertices: int, magnifier: Magnifier) -> QuadMesh:
+def mesh_body(body: Body, n_vertices: int, magnifiers: Magnifiers) -> QuadMesh:
     """Return a mesh of the surface of a body.
 
     Parameters
@@ -55,7 +55,7 @@ def mesh_body(body: Body, n_vertices: int, magnifier: Magnifier) -> QuadMesh:
     body : Body
     n_vertices : int
         How many vertices it is to have, within a few percent.
-    magnifier : Magnifier
+    magnifiers : Magnifiers
         Where the mesh is finer.
 
     Returns
@@ -68,16 +68,16 @@ def mesh_body(body: Body, n_vertices: int, magnifier: Magnifier) -> QuadMesh:
     ValueError
         If the body has parts too thin for that few vertices.
     """
-    cell = float(np.ptp(magnifier.magnified_bounds(body), axis=0).max()) / FIRST_CELLS
+    cell = float(np.ptp(magnified_bounds(body, magnifiers), axis=0).max()) / FIRST_CELLS
     for _ in range(MAX_TRIES):
-        grid = sample(body, cell, magnifier)
+        grid = sample(body, cell, magnifiers)
         inside = well_composed_inside(grid.values)
         n_found = int(mixed_cells(inside).sum())
         if abs(n_found - n_vertices) <= TOLERANCE * n_vertices:
             break
         cell *= np.sqrt(n_found / n_vertices)
     net = surface_net(grid, inside)
-    return evened(QuadMesh(magnifier.shrunk(net.vertices), net.quads), body)
+    return evened(QuadMesh(magnifiers.shrunk(net.vertices), net.quads), body)
 
 
 def surface_net(grid: Grid, inside: Bools) -> QuadMesh:
@@ -138,7 +138,7 @@ def _neighbour_average(quads: Ints, n_vertices: int) -> csr_array:
 
 def _onto(body: Body, vertices: Floats) -> tuple[Floats, Floats]:
     """Return the vertices after a Newton step onto the surface, and its normals."""
-    distance, normals = body.distance(vertices, 3.0 * max(solid.blend for solid in body.solids))
+    distance, normals = body.distance(vertices, 3.0 * body.widest_blend)
     return vertices - np.where(distance < FAR / 2, distance, 0.0)[:, None] * normals, normals
 
 
