@@ -6,7 +6,7 @@ import pytest
 from compute.errors import EngineError
 from compute.fem.eigenbasis import solve_eigenbasis
 from compute.mesh import TriangleMesh
-from tests.compute.fem.shapes import icosphere, rectangle, tetrahedron
+from tests.shapes import icosphere, rectangle, tetrahedron
 
 
 @pytest.mark.parametrize(("order", "rate"), [(1, 2), (2, 4), (3, 6)])
