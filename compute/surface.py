@@ -57,8 +57,6 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
     corners = vertex_of_input[mesh.triangles]
     twin = _first_twin(corners, len(mesh.vertices))
     kept = np.flatnonzero(twin == np.arange(len(twin)))
-    if len(kept) == 0:
-        raise MeshError("Every face of the mesh has collapsed to a line or a point; there is nothing to analyze.")
     welded = TriangleMesh(mesh.vertices, corners[kept])
     label = welded.component_of_triangle
     n_components = int(label.max()) + 1

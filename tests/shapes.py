@@ -50,3 +50,35 @@ def icosphere(n_subdivisions: int = 0) -> TriangleMesh:
         finer = subdivide(mesh)
         mesh = TriangleMesh(finer.vertices / np.linalg.norm(finer.vertices, axis=1)[:, None], finer.triangles)
     return mesh
+
+
+def torus(n_around: int = 24, n_through: int = 12, radius: float = 3.0, thickness: float = 1.0) -> TriangleMesh:
+    """Return a torus about the z axis, wound outward."""
+    around, through = np.meshgrid(np.arange(n_around), np.arange(n_through), indexing="ij")
+    u, v = 2 * np.pi * around / n_around, 2 * np.pi * through / n_through
+    tube = radius + thickness * np.cos(v)
+    points = np.stack([tube * np.cos(u), tube * np.sin(u), thickness * np.sin(v)], axis=-1)
+    number = around * n_through + through
+    right, up = np.roll(number, -1, axis=0), np.roll(number, -1, axis=1)
+    both = np.roll(right, -1, axis=1)
+    triangles = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((number, right, both), (number, both, up))])
+    return TriangleMesh(points.reshape(-1, 3), triangles)
+
+
+def star(n_arms: int = 5, n_subdivisions: int = 4, length: float = 1.5) -> TriangleMesh:
+    """Return a sphere with tapering arms in the plane z = 0, the first along x; all arms a little different."""
+    sphere = icosphere(n_subdivisions)
+    x, y, z = sphere.vertices.T
+    radius = np.ones(len(x))
+    for arm in range(n_arms):
+        angle = 2 * np.pi * arm / n_arms
+        along = x * np.cos(angle) + y * np.sin(angle)
+        radius += length * (1 + 0.1 * arm) * np.exp(-12 * (1 - along))
+    return TriangleMesh(sphere.vertices * radius[:, None], sphere.triangles)
+
+
+def joined(*meshes: TriangleMesh) -> TriangleMesh:
+    """Return the meshes as loose parts of one."""
+    offsets = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
+    triangles = [mesh.triangles + offset for mesh, offset in zip(meshes, offsets, strict=False)]
+    return TriangleMesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(triangles))

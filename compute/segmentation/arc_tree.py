@@ -30,11 +30,14 @@ class ArcTree:
     saddle : (A,) int64
         Net vertex at which the arc closes; -1 for the root.
     closing : (A,) int64
-        The level from which on that saddle survives, less one: the place of its pair by falling persistence. The
-        root has a number that no level reaches.
+        The level from which on that saddle survives, less one: the place of its pair by falling persistence, the
+        first of them if it has several. The root has a number that no level reaches.
+    n_roots : int
+        Parts with the numbers 1 to this have no pair and survive always; the next numbers follow the pairs.
     """
 
     is_of_maxima: bool
+    n_roots: int
     parent: Ints
     part: Ints
     extremum: Ints
@@ -42,17 +45,23 @@ class ArcTree:
     closing: Ints
 
     @cached_property
-    def closing_inside(self) -> Ints:
-        """(A,) the smallest ``closing`` among the arcs strictly above each arc."""
-        inside = np.full(len(self.parent), _NEVER)
-        for arc, parent in enumerate(self.parent.tolist()):
-            if parent >= 0:
-                inside[parent] = min(inside[parent], inside[arc], self.closing[arc])
-        return inside
+    def closing_before(self) -> Ints:
+        """(A,) the smallest ``closing`` on the way from the leaf that names the arc to the arc, itself left out."""
+        before = np.full(len(self.part), _NEVER)
+        smallest: dict[int, int] = {}
+        # A parent has a larger index than its children, so the way from a leaf is met in its order.
+        for arc, (part, closing) in enumerate(zip(self.part.tolist(), self.closing.tolist(), strict=True)):
+            before[arc] = smallest.get(part, _NEVER)
+            smallest[part] = min(closing, smallest.get(part, _NEVER))
+        return before
 
     def is_part_root(self, level: int) -> Bools:
-        """Tell which arcs (A,) are whole parts of a level: closed by a surviving saddle, with none inside."""
-        return (self.closing < level) & (self.closing_inside >= level)
+        """Tell which arcs (A,) are whole parts of a level.
+
+        These are the arcs of surviving leaves that a surviving saddle closes, the first on the way from the leaf.
+        """
+        is_first = (self.closing < level) & (self.closing_before >= level)
+        return is_first & (self.part <= self.n_roots + level)
 
     def part_of_arc(self, level: int) -> Ints:
         """Return the part (A,) each arc belongs to at a level, 0 for the body."""
@@ -85,7 +94,11 @@ _NEVER = np.iinfo(np.int64).max
 
 
 def build_arc_tree(
-    tree: MergeTree, is_of_maxima: bool, closing_of_pair: Ints, part_of_extremum: dict[int, int], cuts: dict[int, int]
+    tree: MergeTree,
+    is_of_maxima: bool,
+    part_of_extremum: dict[int, int],
+    closing_of_saddle: dict[int, int],
+    n_roots: int,
 ) -> tuple[ArcTree, ArcPlaces]:
     """Cancel the noise of a merge tree and cut the rest into arcs.
 
@@ -95,22 +108,22 @@ def build_arc_tree(
         With p pairs.
     is_of_maxima : bool
         Which sweep the tree comes from.
-    closing_of_pair : (p,) int64
-        The place of each pair by falling persistence, -1 for noise.
     part_of_extremum : dict
-        Part of each extremum that is not noise.
-    cuts : dict
-        Further saddles at which the arc below them is cut, with their ``closing``.
+        Part of each extremum of this tree that is not noise.
+    closing_of_saddle : dict
+        The ``closing`` of all saddles that are not noise; those of the other kind of extremum cut the arc below them.
+    n_roots : int
+        Parts that have no pair, in all trees.
     """
     growth = _Growth(tree, part_of_extremum)
-    for vertex, pair in _events(tree, cuts):
+    for vertex, pair in _events(tree, np.array(list(closing_of_saddle), dtype=np.int64)):
         if pair < 0:
-            growth.cut(vertex, cuts[vertex])
-        elif closing_of_pair[pair] < 0:
-            growth.swallow(pair)
+            growth.cut(vertex, closing_of_saddle[vertex])
+        elif int(tree.extremum[pair]) in part_of_extremum:
+            growth.merge(pair, closing_of_saddle[vertex])
         else:
-            growth.merge(pair, int(closing_of_pair[pair]))
-    return growth.arc_tree(is_of_maxima), growth.places()
+            growth.swallow(pair)
+    return growth.arc_tree(is_of_maxima, n_roots), growth.places()
 
 
 def arc_of_vertex(tree: MergeTree, arcs: ArcTree, places: ArcPlaces) -> Ints:
@@ -125,9 +138,9 @@ def arc_of_vertex(tree: MergeTree, arcs: ArcTree, places: ArcPlaces) -> Ints:
     return arc
 
 
-def _events(tree: MergeTree, cuts: dict[int, int]) -> Iterator[tuple[int, int]]:
+def _events(tree: MergeTree, cuts: Ints) -> Iterator[tuple[int, int]]:
     """Yield (vertex, pair) in the order of the sweep, pair -1 for a cut; merges come before a cut at one vertex."""
-    vertex = np.concatenate([tree.saddle, np.array(list(cuts), dtype=np.int64)])
+    vertex = np.concatenate([tree.saddle, cuts])
     pair = np.concatenate([np.arange(len(tree.saddle)), np.full(len(cuts), -1)])
     order = np.argsort(tree.rank[vertex], kind="stable")
     yield from zip(vertex[order].tolist(), pair[order].tolist(), strict=True)
@@ -176,12 +189,14 @@ class _Growth:
         self._open[component] = self._new_arc(self._extremum[arc], vertex)
         self._close(arc, self._open[component], vertex, closing)
 
-    def arc_tree(self, is_of_maxima: bool) -> ArcTree:
+    def arc_tree(self, is_of_maxima: bool, n_roots: int) -> ArcTree:
+        """Return what has grown."""
         part = [self._part_of_extremum[extremum] for extremum in self._extremum]
         columns = (self._parent, part, self._extremum, self._saddle, self._closing)
-        return ArcTree(is_of_maxima, *(np.array(column, dtype=np.int64) for column in columns))
+        return ArcTree(is_of_maxima, n_roots, *(np.array(column, dtype=np.int64) for column in columns))
 
     def places(self) -> ArcPlaces:
+        """Return where the basins of all extrema start."""
         entry = np.zeros(len(self._tree.rank), dtype=np.int64)
         cap = np.zeros(len(self._tree.rank), dtype=np.int64)
         entry[list(self._entry)] = list(self._entry.values())

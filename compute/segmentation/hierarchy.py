@@ -124,17 +124,13 @@ def _grow_trees(
     """Build the arc tree of each sweep; ``features`` are the pairs above the noise, by falling persistence."""
     roots = [extremum for sweep in sweeps for extremum in sweep.tree.roots.tolist()]
     part = {extremum: number for number, extremum in enumerate([*roots, *features[:, 0].tolist()], start=1)}
+    # Where pairs share a saddle, the most persistent one keeps it alive.
+    closing_of_saddle = {saddle: place for place, saddle in reversed(list(enumerate(features[:, 1].tolist())))}
     trees, arcs = [], []
     for sweep in sweeps:
-        own = is_maximum == sweep.is_of_maxima
-        extrema = [*sweep.tree.roots.tolist(), *features[own, 0].tolist()]
-        place = dict(zip(features[own, 0].tolist(), np.flatnonzero(own).tolist(), strict=True))
-        closing = np.array([place.get(extremum, -1) for extremum in sweep.tree.extremum.tolist()], dtype=np.int64)
-        # Where two pairs share a saddle, the more persistent one keeps it alive.
-        cuts = dict(zip(features[~own, 1].tolist()[::-1], np.flatnonzero(~own).tolist()[::-1], strict=True))
-        tree, places = build_arc_tree(
-            sweep.tree, sweep.is_of_maxima, closing, {extremum: part[extremum] for extremum in extrema}, cuts
-        )
+        extrema = [*sweep.tree.roots.tolist(), *features[is_maximum == sweep.is_of_maxima, 0].tolist()]
+        part_of_extremum = {extremum: part[extremum] for extremum in extrema}
+        tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, part_of_extremum, closing_of_saddle, len(roots))
         trees.append(tree)
         arcs.append(arc_of_vertex(sweep.tree, tree, places))
     return tuple(trees), tuple(arcs)
