@@ -6,13 +6,12 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from .magnifier import Magnifiers
-from .rig import Bone, Pose, bone_motions
+from .rig import Bone, Pose, bone_motions, mirrored_name
 from .skinning import blend_skinning, diffused_weights
 from .solids import Body
-from .surface_net import mesh_body
+from .surface_net import mesh_body, mirror_of_vertex
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -111,7 +110,7 @@ class Character:
     @cached_property
     def mirror_of_vertex(self) -> Ints:
         """(V,) the vertex at the mirror image in x = 0, for symmetric characters."""
-        return cKDTree(self.vertices).query(self.vertices * (-1.0, 1.0, 1.0))[1]
+        return mirror_of_vertex(self.vertices)
 
     def mesh_in_pose(self, pose: str) -> Floats:
         """Return the (V, 3) vertices in a named pose."""
@@ -136,4 +135,7 @@ def build(plan: Plan, n_vertices: int) -> Character:
     bone_of_vertex = np.array([number[solid.bone] for solid in plan.body.solids])[nearest]
     triangles = mesh.quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
     weights = diffused_weights(mesh.vertices, triangles, bone_of_vertex, len(plan.bones), radius)
+    if plan.body.symmetric:
+        mirrored_bone = [number[mirrored_name(bone.name)] for bone in plan.bones]
+        weights = 0.5 * (weights + weights[mirror_of_vertex(mesh.vertices)][:, mirrored_bone])
     return Character(plan, mesh.vertices, mesh.quads, weights, bone_of_vertex)

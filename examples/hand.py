@@ -1,11 +1,12 @@
-"""A left hand with a palm, four fingers and a thumb: the fingers points along x, the thumb towards -y, the palm down."""
+"""A left hand, by itself or on an arm: the fingers point along x, the thumb towards -y, the palm down."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from .rig import Bone, Point
-from .solids import Solid
+from .character import Character, Plan, build
+from .rig import Bone, Point, Pose
+from .solids import Body, Solid
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,17 @@ FINGERS = (
 FINGER_NAMES = tuple(finger.name for finger in FINGERS)
 
 
+def hand(n_vertices: int = 5000) -> Character:
+    """Return a left hand with a wrist and about ``n_vertices`` vertices; it is not symmetric.
+
+    Raises
+    ------
+    ValueError
+        If that is too few to keep the fingers whole and apart.
+    """
+    return build(_plan(), n_vertices)
+
+
 def hand_bones(wrist: Point, parent: str, size: float = 1.0) -> tuple[Bone, ...]:
     """Return the bone of the palm and three bones for each finger, from a wrist on."""
     palm = Bone("hand.L", parent, wrist, _placed((0.09, 0.0, 0.0), wrist, size))
@@ -61,6 +73,26 @@ def hand_bones(wrist: Point, parent: str, size: float = 1.0) -> tuple[Bone, ...]
 def hand_solids(wrist: Point, size: float = 1.0) -> tuple[Solid, ...]:
     """Return the flesh of a hand from a wrist on."""
     return (*_palm_solids(wrist, size), *(solid for finger in FINGERS for solid in _finger_solids(finger, wrist, size)))
+
+
+def curled(degrees: float, names: tuple[str, ...] = FINGER_NAMES[:4]) -> dict[str, Point]:
+    """Return the angles that bend all joints of some fingers of a left hand towards the palm."""
+    return {f"{name}_{i}.L": (0.0, degrees, 0.0) for name in names for i in (1, 2, 3)}
+
+
+def _plan() -> Plan:
+    wrist = (0.0, 0.0, 0.0)
+    bones = (Bone("forearm.L", None, (-0.10, 0.0, 0.0), wrist), *hand_bones(wrist, "forearm.L"))
+    forearm = Solid("forearm.L", (-0.07, 0.0, 0.0), (0.0, 0.0, 0.0), (0.033, 0.026), (1.0, 1.0, 0.9))
+    fingers = {bone.name: bone.name.split("_")[0] + ".L" for bone in bones if "_" in bone.name}
+    return Plan(
+        name="hand",
+        bones=bones,
+        body=Body((forearm, *hand_solids(wrist)), symmetric=False),
+        poses=POSES,
+        part_of_bone={"forearm.L": "palm.L", "hand.L": "palm.L", **fingers},
+        fine_part_of_bone={bone.name: bone.name for bone in bones},
+    )
 
 
 def _finger_bones(finger: Finger, wrist: Point, size: float) -> list[Bone]:
@@ -114,3 +146,20 @@ def _palm_solids(wrist: Point, size: float) -> list[Solid]:
 def _placed(point: Point, wrist: Point, size: float) -> Point:
     x, y, z = np.asarray(wrist) + size * np.asarray(point)
     return (float(x), float(y), float(z))
+
+
+POSES = {
+    "rest": Pose(),
+    "grip": Pose(curled(38.0) | {"thumb_1.L": (-25.0, 0.0, 0.0), "thumb_2.L": (0.0, 0.0, 25.0)}),
+    "fist": Pose(curled(66.0) | {"thumb_1.L": (-35.0, 0.0, 10.0), "thumb_2.L": (0.0, 0.0, 35.0)}),
+    "point": Pose(curled(62.0, FINGER_NAMES[1:4]) | {"thumb_1.L": (-30.0, 0.0, 10.0), "thumb_2.L": (0.0, 0.0, 30.0)}),
+    "victory": Pose(
+        curled(62.0, FINGER_NAMES[2:4])
+        | {
+            "thumb_1.L": (-30.0, 0.0, 20.0),
+            "thumb_2.L": (0.0, 0.0, 40.0),
+            "index_1.L": (0.0, -5.0, -6.0),
+            "middle_1.L": (0.0, -5.0, 12.0),
+        }
+    ),
+}

@@ -4,15 +4,8 @@ About x: a leg goes forwards for negative angles, a knee bends for positive ones
 ones. About y: the left arm goes down for positive angles. About z: the left arm goes forwards for negative angles.
 """
 
-from .hand import FINGER_NAMES
-from .rig import Point, Pose, both_sides
-
-
-def curled(degrees: float) -> dict[str, Point]:
-    """Return the left hand with all joints of the four fingers bent by an angle."""
-    bones = (f"{name}_{i}.L" for name in FINGER_NAMES if name != "thumb" for i in (1, 2, 3))
-    return {bone: (0.0, degrees, 0.0) for bone in bones}
-
+from .hand import curled
+from .rig import Pose, both_sides
 
 ARMS_DOWN = both_sides(
     {

@@ -136,9 +136,10 @@ class Body:
             Negative inside; the gradient has about unit length and points outwards.
         """
         folded = self._folded(points)
+        coordinates = np.ascontiguousarray(folded.T)
         value, gradient = np.full(len(points), FAR), np.zeros((len(points), 3))
         for solid in self.solids:
-            near = _rows_near(folded, solid, margin)
+            near = _rows_near(coordinates, solid, margin)
             value[near], gradient[near] = _smooth_union(
                 value[near], gradient[near], *solid.distance(folded[near]), solid.blend
             )
@@ -163,9 +164,12 @@ class Body:
         return np.column_stack([np.abs(points[:, 0]), points[:, 1:]]) if self.symmetric else points
 
 
-def _rows_near(points: Floats, solid: Solid, margin: float) -> Ints:
-    low, high = solid.bounds + np.array([[-margin], [margin]])
-    return np.flatnonzero(((points > low) & (points < high)).all(axis=1))
+def _rows_near(coordinates: Floats, solid: Solid, margin: float) -> Ints:
+    """Return which of the points, (3, n), lie in the solid's box widened by ``margin``."""
+    near = np.ones(coordinates.shape[1], dtype=bool)
+    for values, low, high in zip(coordinates, *solid.bounds, strict=True):
+        near &= (values > low - margin) & (values < high + margin)
+    return np.flatnonzero(near)
 
 
 def _smooth_union(

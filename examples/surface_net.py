@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.spatial import cKDTree
 
 from .grid import Grid, magnified_bounds, mixed_cells, sample, well_composed_inside
 from .magnifier import Magnifiers
@@ -77,7 +78,8 @@ def mesh_body(body: Body, n_vertices: int, magnifiers: Magnifiers) -> QuadMesh:
             break
         cell *= np.sqrt(n_found / n_vertices)
     net = surface_net(grid, inside)
-    return evened(QuadMesh(magnifiers.shrunk(net.vertices), net.quads), body)
+    mesh = evened(QuadMesh(magnifiers.shrunk(net.vertices), net.quads), body)
+    return symmetrized(mesh) if body.symmetric else mesh
 
 
 def surface_net(grid: Grid, inside: Bools) -> QuadMesh:
@@ -101,6 +103,18 @@ def evened(mesh: QuadMesh, body: Body) -> QuadMesh:
     for _ in range(FINAL_STEPS):
         vertices, _ = _onto(body, vertices)
     return QuadMesh(vertices, _with_shorter_diagonal(vertices, mesh.quads))
+
+
+def symmetrized(mesh: QuadMesh) -> QuadMesh:
+    """Return the mesh without the rounding errors by which it is not its own mirror image in x = 0."""
+    images = mesh.vertices[mirror_of_vertex(mesh.vertices)] * (-1.0, 1.0, 1.0)
+    vertices = 0.5 * (mesh.vertices + images)
+    return QuadMesh(vertices, _with_shorter_diagonal(vertices, mesh.quads))
+
+
+def mirror_of_vertex(vertices: Floats) -> Ints:
+    """Return for each vertex the one nearest to its mirror image in x = 0."""
+    return cKDTree(vertices).query(vertices * (-1.0, 1.0, 1.0))[1]
 
 
 def _mean_crossing(values: NDArray[np.float32], inside: Bools, cells: Ints) -> Floats:
