@@ -61,7 +61,9 @@ def torus(n_around: int = 24, n_through: int = 12, radius: float = 3.0, thicknes
     number = around * n_through + through
     right, up = np.roll(number, -1, axis=0), np.roll(number, -1, axis=1)
     both = np.roll(right, -1, axis=1)
-    triangles = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((number, right, both), (number, both, up))])
+    triangles = np.concatenate(
+        [np.stack(t, axis=-1).reshape(-1, 3) for t in ((number, right, both), (number, both, up))]
+    )
     return TriangleMesh(points.reshape(-1, 3), triangles)
 
 

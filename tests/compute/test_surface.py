@@ -66,4 +66,3 @@ def test_refuses_a_component_that_does_not_exist():
 def test_refuses_loose_triangles():
     with pytest.raises(MeshError, match="single triangle"):
         clean_surface(TriangleMesh(np.eye(3), [[0, 1, 2]]))
-

@@ -20,7 +20,9 @@ def parts_of_hierarchy(hierarchy, arcs, level):
     for tree, arc in zip(hierarchy.trees, arcs, strict=True):
         part = tree.part_of_arc(level)[arc]
         tips = {int(p): int(e) for p, e in zip(tree.part, tree.extremum, strict=True)}
-        found |= {(tree.is_of_maxima, tips[p]): set(np.flatnonzero(part == p).tolist()) for p in set(part.tolist()) - {0}}
+        found |= {
+            (tree.is_of_maxima, tips[p]): set(np.flatnonzero(part == p).tolist()) for p in set(part.tolist()) - {0}
+        }
     return found
 
 
