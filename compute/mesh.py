@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
 from .errors import MeshError
@@ -106,11 +106,24 @@ class TriangleMesh:
 
 def edges_of(triangles: Ints, n_vertices: int) -> Edges:
     """Return the edges of triangles over ``n_vertices`` vertices."""
-    sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-    keys = sides.min(axis=1) * n_vertices + sides.max(axis=1)
-    unique, edge, count = np.unique(keys, return_inverse=True, return_counts=True)
-    ends = np.stack([unique // n_vertices, unique % n_vertices], axis=1)
-    return Edges(ends, edge.reshape(-1, 3), count)
+    heads = np.roll(triangles, -1, axis=1)
+    low, high = np.minimum(triangles, heads).ravel(), np.maximum(triangles, heads).ravel()
+    order = _counting_order(high, n_vertices)
+    order = order[_counting_order(low[order], n_vertices)]
+    low, high = low[order], high[order]
+    is_new = np.append(True, (low[1:] != low[:-1]) | (high[1:] != high[:-1]))
+    first = np.flatnonzero(is_new)
+    edge = np.empty(len(order), dtype=np.int64)
+    edge[order] = np.cumsum(is_new) - 1
+    ends = np.stack([low[first], high[first]], axis=1)
+    return Edges(ends, edge.reshape(-1, 3), np.diff(np.append(first, len(order))))
+
+
+def _counting_order(keys: Ints, n_keys: int) -> NDArray[np.int32]:
+    """Return the stable order of keys below ``n_keys``; a sparse transposition is a counting sort, so linear."""
+    rows = np.arange(len(keys) + 1, dtype=np.int32)
+    one_a_row = csr_array((np.empty(len(keys), dtype=np.int8), keys.astype(np.int32), rows), shape=(len(keys), n_keys))
+    return one_a_row.tocsc().indices
 
 
 def _as_rows(values: ArrayLike, dtype: type, name: str) -> NDArray[Any]:

@@ -71,6 +71,21 @@ def rank_vertices(values: Floats) -> Ints:
     return rank
 
 
+def vertices_by_rank(rank: Ints) -> Ints:
+    """Return the vertex at each rank."""
+    vertex = np.empty(len(rank), dtype=np.int64)
+    vertex[rank] = np.arange(len(rank))
+    return vertex
+
+
+def ranked_corners(rank: Ints, links: Links) -> tuple[Ints, Ints, Ints]:
+    """Return the ranks of the lowest, middle and highest corner of every triangle."""
+    first, second, third = rank[links.triangles.T]
+    low, high = np.minimum(first, second), np.maximum(first, second)
+    middle = np.minimum(high, third)
+    return np.minimum(low, middle), np.maximum(low, middle), np.maximum(high, third)
+
+
 def critical_points(values: Floats, rank: Ints, links: Links) -> CriticalPoints:
     """Classify every vertex of the net.
 
@@ -116,19 +131,18 @@ class _LinkNodes:
 
 def _candidates(rank: Ints, links: Links) -> Ints:
     """Return the vertices that are perhaps critical: all but those whose closed link changes side just twice."""
-    is_below = rank[links.ahead] < rank[links.corner]
-    changes = is_below != (rank[links.behind] < rank[links.corner])
-    n_changes = np.add.reduceat(changes, links.start, dtype=np.int64)
-    return links.vertex[(n_changes != 2) | ~links.is_plain[links.vertex]]
+    _, middle, _ = ranked_corners(rank, links)
+    # A link edge changes side where its triangle has the vertex as its middle corner.
+    n_changes = np.bincount(middle, minlength=links.n_vertices)[rank]
+    return np.flatnonzero(((n_changes != 2) | ~links.is_plain) & (links.n_triangles > 0))
 
 
 def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, Ints]:
     """Return the nodes of the lower links with their components, and the number of link edges by vertex."""
     wanted = np.zeros(links.n_vertices, dtype=bool)
     wanted[vertices] = True
-    rows = np.flatnonzero(wanted[links.corner])
-    corner = links.corner[rows]
-    ahead, behind = links.ahead[rows], links.behind[rows]
+    triangle, place = np.nonzero(wanted[links.triangles])
+    corner, ahead, behind = (links.triangles[triangle, (place + shift) % 3] for shift in range(3))
     low_ahead, low_behind = rank[ahead] < rank[corner], rank[behind] < rank[corner]
     # A node is a pair (vertex, lower neighbour); its key sorts by vertex, then by height.
     n = links.n_vertices
@@ -140,6 +154,6 @@ def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, I
     _, component = connected_components(joined, directed=False)
     is_first = np.zeros(len(keys), dtype=bool)
     is_first[np.unique(component, return_index=True)[1]] = True
-    vertex_at_rank = np.argsort(rank)
+    vertex_at_rank = vertices_by_rank(rank)
     nodes = _LinkNodes(keys // n, vertex_at_rank[keys % n], is_first)
     return nodes, np.bincount(corner[is_edge], minlength=n)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..mesh import Ints
-from .critical_points import Sectors, merging_sectors
+from .critical_points import Sectors, merging_sectors, ranked_corners, vertices_by_rank
 from .links import Links
 
 
@@ -50,15 +50,15 @@ def merge_tree(rank: Ints, links: Links) -> MergeTree:
 
 
 def _basins(rank: Ints, links: Links) -> Ints:
-    """Follow the lowest neighbours of all vertices at once down to the minima."""
-    lowest = np.minimum.reduceat(np.minimum(rank[links.ahead], rank[links.behind]), links.start)
-    vertex_at_rank = np.argsort(rank)
+    """Follow lower neighbours of all vertices at once down to the minima."""
+    low, middle, high = ranked_corners(rank, links)
+    # By rank. Any lower neighbour will do: a path down from a vertex stays in the component that it starts in.
     target = np.arange(links.n_vertices)
-    goes_down = lowest < rank[links.vertex]
-    target[links.vertex[goes_down]] = vertex_at_rank[lowest[goes_down]]
+    target[high] = middle
+    target[middle] = low
     while not np.array_equal(target, further := target[target]):
         target = further
-    return target
+    return vertices_by_rank(rank)[target[rank]]
 
 
 def _elder_rule(rank: Ints, sectors: Sectors, basin: Ints) -> tuple[Ints, Ints, Ints]:

@@ -132,9 +132,20 @@ def arc_of_vertex(tree: MergeTree, arcs: ArcTree, places: ArcPlaces) -> Ints:
     height = np.maximum(tree.rank, places.cap[tree.basin])
     # The root closes at a rank that is never reached.
     closing_rank = np.where(arcs.saddle < 0, len(tree.rank), tree.rank[arcs.saddle])
-    climbing = np.arange(len(arc))
-    while len(climbing := climbing[height[climbing] >= closing_rank[arc[climbing]]]):
-        arc[climbing] = arcs.parent[arc[climbing]]
+    return _first_open_ancestor(arc, height, arcs.parent, closing_rank)
+
+
+def _first_open_ancestor(arc: Ints, height: Ints, parent: Ints, closing_rank: Ints) -> Ints:
+    """Climb from each arc to the first one that closes above the given height, in jumps of falling powers of two."""
+    climbing = np.flatnonzero(height >= closing_rank[arc])
+    at, height = arc[climbing], height[climbing]
+    jumps = [np.where(parent < 0, np.arange(len(parent)), parent)]
+    while not np.array_equal(jumps[-1], further := jumps[-1][jumps[-1]]):
+        jumps.append(further)
+    for jump in reversed(jumps):
+        target = jump[at]
+        at = np.where(height >= closing_rank[target], target, at)
+    arc[climbing] = parent[at]
     return arc
 
 
