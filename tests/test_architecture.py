@@ -19,7 +19,10 @@ MAY_IMPORT = {
 OUTSIDE = {"compute": {"numpy", "scipy"}, "operators": {"bpy", "numpy"}, "cli": {"bpy", "numpy"}, "ui": {"bpy"}}
 
 # A part of the engine may import only parts that stand before it: the path of the data, read from left to right.
-PIPELINE = "errors progress mesh surface geodesics fem fields msc segmentation analysis registration skeleton".split()
+PIPELINE = [
+    *("errors", "progress", "mesh", "surface", "orientation", "geodesics", "fem", "fields", "msc"),
+    *("segmentation", "analysis", "registration", "skeleton"),
+]
 
 
 def violations(root: Path) -> set[str]:

@@ -8,7 +8,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 # Where the usual version managers keep interpreters that are not on the search path.
-MANAGED = (".pyenv/versions/{version}.*", ".local/share/uv/python/cpython-{version}.*", ".asdf/installs/python/{version}.*")
+MANAGED = (
+    ".pyenv/versions/{version}.*",
+    ".local/share/uv/python/cpython-{version}.*",
+    ".asdf/installs/python/{version}.*",
+)
 
 
 def find_python(version: str) -> str | None:

@@ -1,0 +1,34 @@
+"""The command line: ``blender --background --command eigenparts ...``, and the same as :func:`main`."""
+
+import sys
+from collections.abc import Sequence
+
+import bpy
+
+from ..operators import engine
+
+_handles: list[object] = []
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run one command and return its exit code: 0, 1 if a file failed, 2 if the arguments are wrong."""
+    if not engine.is_complete():
+        sys.stderr.write(engine.MISSING_SCIPY + "\n")
+        return 1
+    # The engine takes its time to load, and Blender starts often without this being called.
+    from .arguments import parse
+
+    try:
+        options = parse(list(argv))
+    except SystemExit as exit_request:
+        return int(exit_request.code or 0)
+    return options.run(options, sys.stdout, sys.stderr)
+
+
+def register() -> None:
+    _handles.append(bpy.utils.register_cli_command("eigenparts", main))
+
+
+def unregister() -> None:
+    while _handles:
+        bpy.utils.unregister_cli_command(_handles.pop())

@@ -1,0 +1,106 @@
+"""Read meshes from files and write divided ones: Blender's importers and exporters, and our own for .off."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+
+from ..operators.refusals import Refusal
+from .materials import give_parts_materials
+from .off import read_off, write_off
+
+
+@dataclass(frozen=True)
+class Format:
+    """How one kind of file is read, and written with what it can hold of the parts."""
+
+    read: Callable[[Path], None]
+    write: Callable[[Path], None]
+    output_suffix: str
+
+
+def load(path: Path) -> list[bpy.types.Object]:
+    """Open a file in place of what is open now and return its mesh objects, each mesh once."""
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise Refusal(f"files ending in {suffix!r} cannot be read; known are {' '.join(FORMATS)}.")
+    if not path.is_file():
+        raise Refusal("there is no such file.")
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    FORMATS[suffix].read(path)
+    objects = {obj.data: obj for obj in reversed(bpy.data.objects) if obj.type == "MESH" and obj.data.library is None}
+    if not objects:
+        raise Refusal("there is no mesh in this file.")
+    return sorted(objects.values(), key=lambda obj: obj.name)
+
+
+def save(source: Path, folder: Path) -> Path:
+    """Write what is open now beside its source or into a folder, and return where."""
+    file_format = FORMATS[source.suffix.lower()]
+    folder.mkdir(parents=True, exist_ok=True)
+    target = folder / f"{source.stem}_parts{file_format.output_suffix}"
+    file_format.write(target)
+    return target
+
+
+def _read_blend(path: Path) -> None:
+    bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False, use_scripts=False)
+
+
+def _write_blend(path: Path) -> None:
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, check_existing=False)
+
+
+def _read_obj(path: Path) -> None:
+    bpy.ops.wm.obj_import(filepath=str(path))
+
+
+def _write_obj(path: Path) -> None:
+    give_parts_materials()
+    bpy.ops.wm.obj_export(filepath=str(path), export_materials=True, export_normals=False, check_existing=False)
+
+
+def _read_ply(path: Path) -> None:
+    bpy.ops.wm.ply_import(filepath=str(path))
+
+
+def _write_ply(path: Path) -> None:
+    bpy.ops.wm.ply_export(filepath=str(path), export_colors="SRGB", export_attributes=True, check_existing=False)
+
+
+def _read_stl(path: Path) -> None:
+    bpy.ops.wm.stl_import(filepath=str(path))
+
+
+def _read_gltf(path: Path) -> None:
+    bpy.ops.import_scene.gltf(filepath=str(path))
+
+
+def _write_gltf(path: Path) -> None:
+    give_parts_materials()
+    bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLB", check_existing=False)
+
+
+def _read_fbx(path: Path) -> None:
+    # Blender 5 has its own reader; the add-on's is still there in some versions.
+    read = bpy.ops.wm.fbx_import if hasattr(bpy.types, "WM_OT_fbx_import") else bpy.ops.import_scene.fbx
+    read(filepath=str(path))
+
+
+def _write_fbx(path: Path) -> None:
+    give_parts_materials()
+    bpy.ops.export_scene.fbx(filepath=str(path), check_existing=False)
+
+
+# .stl can hold nothing of the parts, so its result is a .blend.
+FORMATS = {
+    ".blend": Format(_read_blend, _write_blend, ".blend"),
+    ".obj": Format(_read_obj, _write_obj, ".obj"),
+    ".ply": Format(_read_ply, _write_ply, ".ply"),
+    ".stl": Format(_read_stl, _write_blend, ".blend"),
+    ".glb": Format(_read_gltf, _write_gltf, ".glb"),
+    ".gltf": Format(_read_gltf, _write_gltf, ".glb"),
+    ".fbx": Format(_read_fbx, _write_fbx, ".fbx"),
+    ".off": Format(read_off, write_off, ".off"),
+}

@@ -1,0 +1,66 @@
+"""The Object File Format: vertices and polygons as text, with a colour for each polygon when written."""
+
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ..operators.exchange import read_own_integers
+from ..operators.palette import colours_of_labels
+from ..operators.refusals import Refusal
+from ..operators.results import PART
+
+
+def read_off(path: Path) -> None:
+    """Add the mesh of a file to the scene."""
+    try:
+        vertices, polygons = parse_off(path.read_text())
+    except (ValueError, IndexError, UnicodeDecodeError) as error:
+        raise Refusal("this is not a readable .off file.") from error
+    mesh = bpy.data.meshes.new(path.stem)
+    mesh.from_pydata(vertices, [], polygons)
+    mesh.validate()
+    bpy.context.collection.objects.link(bpy.data.objects.new(path.stem, mesh))
+
+
+def parse_off(text: str) -> tuple[list[list[float]], list[list[int]]]:
+    """Return the positions and the polygons; what stands behind them on a line, such as colours, is left out."""
+    lines = [line for line in (raw.partition("#")[0].split() for raw in text.splitlines()) if line]
+    keyword = lines[0].pop(0)
+    if not keyword.endswith("OFF"):
+        raise ValueError(keyword)
+    lines = lines if lines[0] else lines[1:]
+    n_vertices, n_polygons = int(lines[0][0]), int(lines[0][1])
+    rows = lines[1:]
+    if len(rows) < n_vertices + n_polygons:
+        raise ValueError("the file ends too early")
+    vertices = [[float(number) for number in row[:3]] for row in rows[:n_vertices]]
+    polygons = [
+        [int(index) for index in row[1 : 1 + int(row[0])]] for row in rows[n_vertices : n_vertices + n_polygons]
+    ]
+    if any(len(vertex) < 3 for vertex in vertices) or any(
+        not 0 <= i < n_vertices for polygon in polygons for i in polygon
+    ):
+        raise ValueError("a vertex is missing")
+    return vertices, [polygon for polygon in polygons if len(polygon) >= 3]
+
+
+def write_off(path: Path) -> None:
+    """Write the meshes of the scene as one, each polygon in the colour of its part."""
+    vertices, polygons = [], []
+    for obj in (obj for obj in bpy.data.objects if obj.type == "MESH"):
+        labels = read_own_integers(obj.data, PART)
+        colours = _bytes_of_labels(int(labels.max(initial=0)) + 1)
+        for polygon, label in zip(obj.data.polygons, labels.tolist(), strict=True):
+            corners = " ".join(str(len(vertices) + index) for index in polygon.vertices)
+            polygons.append(f"{polygon.loop_total} {corners} {colours[label]}")
+        positions = (obj.matrix_world @ vertex.co for vertex in obj.data.vertices)
+        vertices += [f"{x:.9g} {y:.9g} {z:.9g}" for x, y, z in positions]
+    path.write_text("\n".join(["OFF", f"{len(vertices)} {len(polygons)} 0", *vertices, *polygons]) + "\n")
+
+
+def _bytes_of_labels(n_labels: int) -> list[str]:
+    """Return the colour of each label as the format wants it, "230 159 0"."""
+    linear = colours_of_labels(n_labels)[:, :3]
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return [" ".join(map(str, row)) for row in np.rint(255 * srgb).astype(int).tolist()]

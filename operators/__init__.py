@@ -1,0 +1,8 @@
+"""Everything a user can do: one module for each action, and what the actions share."""
+
+import bpy
+
+register, unregister = bpy.utils.register_submodule_factory(
+    __package__,
+    ["properties", "analyze", "segment", "select_part", "cancel", "clear"],
+)

@@ -1,0 +1,130 @@
+"""Operator: find the features of a mesh and divide it into parts at the default level."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import bpy
+
+from . import background, engine, exchange, results, state
+from .background import BackgroundOperator
+from .properties import AnalysisOptions
+from .refusals import Refusal, can_use_active_mesh
+from .viewport import show_vertex_colours
+
+
+@dataclass(frozen=True)
+class Ticket:
+    """Where a result belongs; names and pointers do not survive undo, these do."""
+
+    session_uid: int
+    fingerprint: str
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What an analysis leaves for the mesh."""
+
+    stored: state.StoredAnalysis
+    description: str
+    warnings: tuple[str, ...]
+    seconds: float
+
+
+class EIGENPARTS_OT_analyze(AnalysisOptions, BackgroundOperator, bpy.types.Operator):
+    """Find the features of the active mesh and divide it into parts"""
+
+    bl_idname = "eigenparts.analyze"
+    bl_label = "Analyze"
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if background.is_running():
+            cls.poll_message_set("Another job is running; wait for it or cancel it.")
+            return False
+        return can_use_active_mesh(cls, context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """From the window: what the call leaves open is taken from the panel."""
+        for name in AnalysisOptions.__annotations__:
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(context.scene.eigenparts, name))
+        return super().invoke(context, event)
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Outcome], Ticket]:
+        mesh = context.object.data
+        exchange.refuse_foreign(mesh, (*results.RESULTS, *state.BRANCHES))
+        if self.use_modifiers:
+            arrays = exchange.read_evaluated_mesh(context.object, context.evaluated_depsgraph_get())
+        else:
+            arrays = exchange.read_mesh(mesh)
+        ticket = Ticket(mesh.session_uid, exchange.fingerprint(mesh))
+        return partial(analyze_arrays, arrays, self._options(mesh)), ticket
+
+    def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
+        mesh = _find_mesh(ticket)
+        state.store(mesh, outcome.stored, outcome.description)
+        labels = results.segment_mesh(mesh)
+        show_vertex_colours(context)
+        for warning in (*outcome.warnings, *labels.warnings):
+            self.report({"WARNING"}, warning)
+        self.report({"INFO"}, _told(len(labels.parts), outcome.seconds))
+        return {"FINISHED"}
+
+    def _options(self, mesh: bpy.types.Mesh) -> dict[str, Any]:
+        return analysis_options(
+            mesh, self.field, self.eigenfunction, self.attribute, order=self.order, boundary=self.boundary
+        )
+
+
+def analysis_options(
+    mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str
+) -> dict[str, Any]:
+    """Return the keyword arguments of the engine for the settings of the user."""
+    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": eigenfunction}
+    return {
+        "field": exchange.read_vertex_floats(mesh, attribute) if field == "ATTRIBUTE" else choice[field],
+        "order": "auto" if order == "AUTO" else int(order),
+        "boundary": boundary.lower(),
+    }
+
+
+def analyze_arrays(
+    arrays: exchange.MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]
+) -> Outcome:
+    """Run the engine; knows nothing of Blender, so any thread may do it."""
+    start = time.perf_counter()
+    mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
+    analysis = engine.analyze(mesh, **options, progress=progress)
+    stored = state.StoredAnalysis(analysis.hierarchy, analysis.branches(arrays.polygon_of_triangle))
+    return Outcome(stored, _described(options), analysis.warnings, time.perf_counter() - start)
+
+
+def _described(options: dict[str, Any]) -> str:
+    field = options["field"]
+    if isinstance(field, int):
+        return f"Eigenfunction {field}"
+    return "Diffusion" if isinstance(field, str) else "Own values"
+
+
+def _find_mesh(ticket: Ticket) -> bpy.types.Mesh:
+    mesh = next((mesh for mesh in bpy.data.meshes if mesh.session_uid == ticket.session_uid), None)
+    if mesh is None:
+        raise Refusal("The mesh was deleted while it was analyzed.")
+    if mesh.is_editmode:
+        raise Refusal("The mesh was taken into edit mode while it was analyzed; leave edit mode and analyze it again.")
+    if exchange.fingerprint(mesh) != ticket.fingerprint:
+        raise Refusal("The mesh was edited while it was analyzed; analyze it again.")
+    return mesh
+
+
+def _told(n_parts: int, seconds: float) -> str:
+    if n_parts == 1:
+        return f"No features: the mesh is one part ({seconds:.1f} s)."
+    return f"{n_parts} parts ({seconds:.1f} s)."
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_analyze,))

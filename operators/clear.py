@@ -1,0 +1,31 @@
+"""Operator: remove everything Eigenparts left on a mesh."""
+
+import bpy
+
+from . import exchange, results, state
+from .refusals import can_use_active_mesh
+from .viewport import restore_colour_types
+
+
+class EIGENPARTS_OT_clear(bpy.types.Operator):
+    """Remove the analysis, the parts and their colours from the active mesh"""
+
+    bl_idname = "eigenparts.clear"
+    bl_label = "Clear"
+    bl_options = {"UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return can_use_active_mesh(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        mesh = context.object.data
+        exchange.remove_own_attributes(mesh)
+        results.forget_colours(mesh)
+        state.forget(mesh)
+        if not any(state.is_analyzed(other) for other in bpy.data.meshes):
+            restore_colour_types(context)
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_clear,))

@@ -1,0 +1,34 @@
+"""What the operators use of the engine, loaded when first asked for: scipy takes its time, and may be missing."""
+
+import sys
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+MISSING_SCIPY = (
+    "Eigenparts needs scipy, which is not installed; "
+    "install the Eigenparts zip made for your system and Blender version, or add scipy to Blender's Python."
+)
+
+_HOME = {
+    "EngineError": "errors",
+    "Cancelled": "errors",
+    "TriangleMesh": "mesh",
+    "Hierarchy": "segmentation.hierarchy",
+    "ArcTree": "segmentation.arc_tree",
+    "Branches": "segmentation.branches",
+    "Parts": "segmentation.parts",
+    "label_branches": "segmentation.parts",
+    "analyze": "analysis",
+}
+
+
+def is_complete() -> bool:
+    """Whether the libraries of the engine are there; cheap enough for every redraw."""
+    return "scipy" in sys.modules or find_spec("scipy") is not None
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(name)
+    return getattr(import_module(f"..compute.{_HOME[name]}", __package__), name)

@@ -1,0 +1,168 @@
+"""Copy data between Blender meshes and the engine: the one bridge.
+
+Attributes we write are marked in a property of the mesh, so that nothing of the user's is ever overwritten or removed.
+"""
+
+from dataclasses import dataclass
+from hashlib import blake2b
+
+import bpy
+import numpy as np
+
+from .refusals import Refusal
+
+# Names of the attributes that are ours, one a line.
+OWN_ATTRIBUTES = "eigenparts_attributes"
+
+
+@dataclass(frozen=True, eq=False)
+class MeshArrays:
+    """The surface of a Blender mesh; V vertices, T triangles.
+
+    Attributes
+    ----------
+    vertices : (V, 3) float64
+    triangles : (T, 3) int64
+    polygon_of_triangle : (T,) int64
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    polygon_of_triangle: np.ndarray
+
+
+@dataclass(frozen=True)
+class OwnAttribute:
+    """An attribute of ours: its name, what it holds and where, and the property its values are in."""
+
+    name: str
+    data_type: str
+    domain: str
+    property_name: str = "value"
+
+    def is_kind_of(self, attribute: bpy.types.Attribute) -> bool:
+        """Whether an attribute has this type and domain."""
+        return (attribute.data_type, attribute.domain) == (self.data_type, self.domain)
+
+
+def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
+    """Return the positions and the triangles of a mesh that is not in edit mode."""
+    vertices = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    if len(vertices):
+        mesh.attributes["position"].data.foreach_get("vector", vertices)
+    triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    return MeshArrays(
+        vertices.reshape(-1, 3).astype(np.float64),
+        triangles.reshape(-1, 3).astype(np.int64),
+        polygon_of_triangle(mesh).astype(np.int64),
+    )
+
+
+def read_evaluated_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshArrays:
+    """Return the mesh as its modifiers leave it; they may move it, but its faces must stay the same."""
+    evaluated = obj.evaluated_get(depsgraph).data
+    if _faces_digest(evaluated) != _faces_digest(obj.data):
+        raise Refusal("The modifiers change the faces of the mesh; apply them first or analyze it without modifiers.")
+    return read_mesh(evaluated)
+
+
+def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
+    """Return the (V,) values of a float attribute of the vertices."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or (attribute.data_type, attribute.domain) != ("FLOAT", "POINT"):
+        raise Refusal(f'The mesh has no attribute "{name}" with one decimal number for each vertex.')
+    values = np.empty(len(attribute.data), dtype=np.float32)
+    attribute.data.foreach_get("value", values)
+    return values.astype(np.float64)
+
+
+def polygon_of_triangle(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (T,) polygon of each triangle."""
+    polygons = np.empty(len(mesh.loop_triangles), dtype=np.int32)
+    mesh.loop_triangle_polygons.foreach_get("value", polygons)
+    return polygons
+
+
+def n_corners_of_polygon(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (F,) number of corners of each polygon."""
+    # A polygon of n corners has n - 2 triangles, and they are read far faster than the polygons.
+    return np.bincount(polygon_of_triangle(mesh), minlength=len(mesh.polygons)) + 2
+
+
+def vertex_of_corner(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (C,) vertex at each corner of each polygon."""
+    vertices = np.empty(len(mesh.loops), dtype=np.int32)
+    if len(vertices):
+        mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
+    return vertices
+
+
+def fingerprint(mesh: bpy.types.Mesh) -> str:
+    """Return a text that changes whenever a vertex or a face of the mesh does."""
+    digest = blake2b(_faces_digest(mesh), digest_size=16)
+    positions = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    if len(positions):
+        mesh.attributes["position"].data.foreach_get("vector", positions)
+    digest.update(positions)
+    return digest.hexdigest()
+
+
+def refuse_foreign(mesh: bpy.types.Mesh, attributes: tuple[OwnAttribute, ...]) -> None:
+    """Raise a Refusal if an attribute of the user's stands where one of ours belongs."""
+    for own in attributes:
+        present = mesh.attributes.get(own.name)
+        if present is not None and not (own.name in own_names(mesh) and own.is_kind_of(present)):
+            raise Refusal(f'The mesh has an attribute "{own.name}" that is not from Eigenparts; rename or delete it.')
+
+
+def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: np.ndarray) -> None:
+    """Store values in an attribute of ours, new or already there.
+
+    Parameters
+    ----------
+    values : (n,) or (n, components)
+        int32 or float32, as Blender keeps them; anything else is slow.
+    """
+    refuse_foreign(mesh, (own,))
+    if own.name not in mesh.attributes:
+        mesh.attributes.new(own.name, type=own.data_type, domain=own.domain)
+        _set_own_names(mesh, [*own_names(mesh), own.name])
+    mesh.attributes[own.name].data.foreach_set(own.property_name, np.ascontiguousarray(values).ravel())
+
+
+def read_own_integers(mesh: bpy.types.Mesh, own: OwnAttribute) -> np.ndarray:
+    """Return the (n,) int32 values of an attribute of ours."""
+    attribute = mesh.attributes.get(own.name)
+    if attribute is None or not own.is_kind_of(attribute):
+        raise Refusal(f'The attribute "{own.name}" of the analysis is gone; analyze the mesh again.')
+    values = np.empty(len(attribute.data), dtype=np.int32)
+    attribute.data.foreach_get(own.property_name, values)
+    return values
+
+
+def remove_own_attributes(mesh: bpy.types.Mesh) -> None:
+    """Remove every attribute that is ours, and the marks."""
+    for name in own_names(mesh):
+        if (attribute := mesh.attributes.get(name)) is not None:
+            mesh.attributes.remove(attribute)
+    _set_own_names(mesh, [])
+
+
+def own_names(mesh: bpy.types.Mesh) -> list[str]:
+    """Return the names of the attributes that are marked as ours."""
+    marked = mesh.get(OWN_ATTRIBUTES, "")
+    return marked.splitlines() if isinstance(marked, str) else []
+
+
+def _set_own_names(mesh: bpy.types.Mesh, names: list[str]) -> None:
+    if names:
+        mesh[OWN_ATTRIBUTES] = "\n".join(dict.fromkeys(names))
+    elif OWN_ATTRIBUTES in mesh:
+        del mesh[OWN_ATTRIBUTES]
+
+
+def _faces_digest(mesh: bpy.types.Mesh) -> bytes:
+    digest = blake2b(vertex_of_corner(mesh), digest_size=16)
+    digest.update(polygon_of_triangle(mesh))
+    return digest.digest()

@@ -1,0 +1,23 @@
+"""Colours of parts: distinct for colour-blind people too, on a neutral grey body."""
+
+import numpy as np
+
+BODY = "9e9e9e"
+# From the qualitative schemes of Okabe and Ito and of Paul Tol, ordered so that each colour is as far as possible from
+# all before it, in normal sight and under complete protanopia, deuteranopia and tritanopia.
+PARTS = (
+    *("e69f00", "0077bb", "cc3311", "882e72", "66ccee", "f0e442", "ffaabb", "117733", "332288", "72190e"),
+    *("59a14f", "ae76a3", "cae0ab", "aa4499", "77aadd", "ee6677", "bbcc33", "99ddff", "9c755f"),
+)
+
+
+def colours_of_labels(n_labels: int) -> np.ndarray:
+    """Return (n_labels, 4) float32 linear RGBA, row 0 the body; the colours repeat after the last."""
+    srgb = np.array([_components(PARTS[(label - 1) % len(PARTS)]) for label in range(n_labels)], dtype=np.float64)
+    srgb[:1] = _components(BODY)
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    return np.column_stack([linear, np.ones(n_labels)]).astype(np.float32)
+
+
+def _components(hexadecimal: str) -> tuple[float, ...]:
+    return tuple(component / 255 for component in bytes.fromhex(hexadecimal))

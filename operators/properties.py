@@ -1,0 +1,133 @@
+"""The settings the user sees: how to analyze, which level to show, and how far a job is."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from . import engine, results, state
+from .refusals import Refusal
+
+
+class AnalysisOptions:
+    """What an analysis can be asked for; the scene keeps it for the panel, the operator takes it from scripts."""
+
+    field: EnumProperty(
+        name="Field",
+        description="The function on the surface whose hills become parts",
+        items=[
+            ("DIFFUSION", "Diffusion", "Finds every protrusion: limbs, heads, fingers, tails"),
+            ("EIGENFUNCTION", "Eigenfunction", "One vibration mode; the first runs along the longest extent"),
+            ("ATTRIBUTE", "Attribute", "Your own values: a float attribute of the vertices"),
+        ],
+    )
+    eigenfunction: IntProperty(name="Number", description="Which eigenfunction, from the smoothest", default=1, min=1)
+    attribute: StringProperty(name="Attribute", description="Name of a float attribute of the vertices")
+    order: EnumProperty(
+        name="Order",
+        description="Degree of the finite elements: higher is more accurate and slower",
+        items=[
+            ("AUTO", "Automatic", "Cubic as long as it is cheap, then quadratic, then linear"),
+            ("1", "Linear", "Fast, for large meshes"),
+            ("2", "Quadratic", "Between the two"),
+            ("3", "Cubic", "Most accurate"),
+        ],
+    )
+    boundary: EnumProperty(
+        name="Boundary",
+        description="How the function behaves at open edges",
+        items=[
+            ("NEUMANN", "Free", "The function meets open edges at a right angle; right for most meshes"),
+            ("DIRICHLET", "Fixed", "The function is zero at open edges; the mesh must have some"),
+        ],
+    )
+    use_modifiers: BoolProperty(
+        name="With Modifiers",
+        description="Analyze the posed shape as modifiers leave it; they must not change the faces",
+    )
+
+
+class EigenpartsAnalysisSettings(AnalysisOptions, bpy.types.PropertyGroup):
+    """The options the panel shows."""
+
+
+def _level(settings: "EigenpartsMeshSettings") -> int:
+    return _summary_value(settings, "level")
+
+
+def _n_parts(settings: "EigenpartsMeshSettings") -> int:
+    return _summary_value(settings, "n_parts")
+
+
+def _set_level(settings: "EigenpartsMeshSettings", level: int) -> None:
+    highest = max(0, _summary_value(settings, "n_levels") - 1)
+    _segment(settings.id_data, level=min(level, highest))
+
+
+def _set_n_parts(settings: "EigenpartsMeshSettings", n_parts: int) -> None:
+    _segment(settings.id_data, n_parts=n_parts)
+
+
+class EigenpartsMeshSettings(bpy.types.PropertyGroup):
+    """What a mesh shows now; the values live in its state, so they follow it through undo, copies and files."""
+
+    level: IntProperty(
+        name="Level",
+        description="How many of the most prominent features are parts",
+        min=0,
+        get=_level,
+        set=_set_level,
+    )
+    n_parts: IntProperty(
+        name="Parts",
+        description="How many parts the mesh is divided into, the body included",
+        min=1,
+        get=_n_parts,
+        set=_set_n_parts,
+    )
+
+
+class EigenpartsJobStatus(bpy.types.PropertyGroup):
+    """How far the running job is, for the panel, and what went wrong last."""
+
+    is_running: BoolProperty(options={"SKIP_SAVE"})
+    fraction: FloatProperty(options={"SKIP_SAVE"}, subtype="FACTOR", min=0, max=1)
+    text: StringProperty(options={"SKIP_SAVE"})
+    problem: StringProperty(options={"SKIP_SAVE"})
+
+
+def _summary_value(settings: EigenpartsMeshSettings, name: str) -> int:
+    try:
+        summary = state.summarize(settings.id_data)
+    except Refusal:
+        return 0
+    return len(summary.parts) if name == "n_parts" else getattr(summary, name)
+
+
+def _segment(mesh: bpy.types.Mesh, **choice: int) -> None:
+    """Segment at once; a property cannot report, so the panel tells what went wrong."""
+    status = bpy.context.window_manager.eigenparts
+    try:
+        status.problem = " ".join(results.segment_mesh(mesh, **choice).warnings)
+    except (Refusal, engine.EngineError) as error:
+        status.problem = str(error)
+
+
+_OWNERS = {
+    bpy.types.Scene: EigenpartsAnalysisSettings,
+    bpy.types.Mesh: EigenpartsMeshSettings,
+    bpy.types.WindowManager: EigenpartsJobStatus,
+}
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(tuple(_OWNERS.values()))
+
+
+def register() -> None:
+    """Give scenes, meshes and the window manager their settings."""
+    _register_classes()
+    for owner, group in _OWNERS.items():
+        owner.eigenparts = PointerProperty(type=group)
+
+
+def unregister() -> None:
+    """Take the settings away again."""
+    for owner in _OWNERS:
+        del owner.eigenparts
+    _unregister_classes()

@@ -1,0 +1,41 @@
+"""Sentences for the user instead of tracebacks, at the one place where operators catch errors."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bpy
+
+from . import engine
+
+
+class Refusal(Exception):  # noqa: N818 - nothing is broken: the user can mend it
+    """Something cannot be done as things are; the text says what the user can do."""
+
+
+@contextmanager
+def refusals_told(operator: bpy.types.Operator) -> Iterator[None]:
+    """Report refusals of ours and of the engine; what stands behind the block then cancels the operator."""
+    try:
+        yield
+    except (Refusal, engine.EngineError) as error:
+        operator.report({"ERROR"}, str(error))
+
+
+def can_use_active_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Whether the active object is a mesh that can be read and written; if not, the tooltip says why."""
+    sentence = _objection(context.object)
+    if sentence:
+        operator.poll_message_set(sentence)
+    return not sentence
+
+
+def _objection(obj: bpy.types.Object | None) -> str:
+    if not engine.is_complete():
+        return engine.MISSING_SCIPY
+    if obj is None or obj.type != "MESH":
+        return "Select a mesh object first."
+    if obj.mode == "EDIT":
+        return "Leave edit mode first; results are written to the mesh as a whole."
+    if obj.data.library is not None:
+        return "The mesh is linked from another file; make it local first."
+    return ""

@@ -1,0 +1,45 @@
+"""Operator: divide an analyzed mesh into parts at another level."""
+
+import bpy
+from bpy.props import FloatProperty, IntProperty
+
+from . import results, state
+from .refusals import can_use_active_mesh, refusals_told
+from .viewport import show_vertex_colours
+
+
+class EIGENPARTS_OT_segment(bpy.types.Operator):
+    """Divide the analyzed mesh into parts: by level, threshold or number, or at the default level"""
+
+    bl_idname = "eigenparts.segment"
+    bl_label = "Segment"
+    bl_options = {"UNDO"}
+
+    level: IntProperty(name="Level", description="How many features to keep", options={"SKIP_SAVE"})
+    threshold: FloatProperty(
+        name="Threshold",
+        description="Least height of a feature, as a fraction of the field's range",
+        options={"SKIP_SAVE"},
+    )
+    n_parts: IntProperty(name="Parts", description="How many parts, the body included", options={"SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not can_use_active_mesh(cls, context):
+            return False
+        if not state.is_analyzed(context.object.data):
+            cls.poll_message_set(state.ABSENT)
+        return state.is_analyzed(context.object.data)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        given = [name for name in ("level", "threshold", "n_parts") if self.properties.is_property_set(name)]
+        with refusals_told(self):
+            labels = results.segment_mesh(context.object.data, **{name: getattr(self, name) for name in given})
+            show_vertex_colours(context)
+            for warning in labels.warnings:
+                self.report({"WARNING"}, warning)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_segment,))

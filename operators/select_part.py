@@ -1,0 +1,57 @@
+"""Operator: select the faces of a part for editing."""
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, IntProperty
+
+from .exchange import read_own_integers
+from .refusals import can_use_active_mesh, refusals_told
+from .results import PART
+
+
+class EIGENPARTS_OT_select_part(bpy.types.Operator):
+    """Select the faces of a part and go to edit mode; with Shift, add them to the selection"""
+
+    bl_idname = "eigenparts.select_part"
+    bl_label = "Select Part"
+    bl_options = {"REGISTER", "UNDO"}
+
+    part: IntProperty(name="Part", description="Number of the part; 0 is the body", min=0)
+    extend: BoolProperty(name="Extend", description="Keep what is selected already", options={"SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return can_use_active_mesh(cls, context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        self.extend = event.shift
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        mesh = context.object.data
+        with refusals_told(self):
+            is_selected = read_own_integers(mesh, PART) == self.part
+            _select_faces(mesh, is_selected | _selected_faces(mesh) if self.extend else is_selected)
+            context.tool_settings.mesh_select_mode = (False, False, True)
+            bpy.ops.object.mode_set(mode="EDIT")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def _selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+    selection = np.empty(len(mesh.polygons), dtype=bool)
+    mesh.polygons.foreach_get("select", selection)
+    return selection
+
+
+def _select_faces(mesh: bpy.types.Mesh, is_selected: np.ndarray) -> None:
+    """Select faces and nothing else; edit mode would grow the selection from vertices and edges left selected."""
+    for elements, selection in (
+        (mesh.vertices, np.zeros(len(mesh.vertices), dtype=bool)),
+        (mesh.edges, np.zeros(len(mesh.edges), dtype=bool)),
+        (mesh.polygons, is_selected),
+    ):
+        elements.foreach_set("select", selection)
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_select_part,))
