@@ -18,11 +18,16 @@ from .segmentation.arc_areas import arc_areas
 from .segmentation.branches import Branches, build_branches
 from .segmentation.faces import face_graph
 from .segmentation.hierarchy import Hierarchy, build_hierarchy
+from .segmentation.necks import measured
 from .segmentation.parts import Segmentation, label_branches
 from .surface import Surface, clean_surface
 
 # Functions computed for the first eigenfunctions when nobody asks for a number.
 DEFAULT_FUNCTIONS = 12
+# Functions for matching and dense maps, and the least number of unknowns that carry them accurately: elements of a
+# higher order are used where linear ones have fewer.
+MATCHING_FUNCTIONS = 100
+MATCHING_UNKNOWNS = 3000
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +68,11 @@ class Analysis:
         return solve_on_surface(self.surface, min(DEFAULT_FUNCTIONS, _n_available(self.surface, "neumann")))
 
     @cached_property
+    def matching_basis(self) -> Eigenbasis:
+        """Up to 100 free eigenfunctions for matching and dense maps; computed when first asked for and kept."""
+        return _solve_for_matching(self.surface)
+
+    @cached_property
     def complex(self) -> CriticalPoints:
         """The critical points of the field."""
         values = self.field.values
@@ -94,7 +104,12 @@ class Analysis:
         return tuple(found)
 
     def segment(
-        self, *, level: int | None = None, threshold: float | None = None, n_parts: int | None = None
+        self,
+        *,
+        level: int | None = None,
+        threshold: float | None = None,
+        n_parts: int | None = None,
+        mode: str = "features",
     ) -> Segmentation:
         """Divide the mesh into parts.
 
@@ -106,6 +121,8 @@ class Analysis:
             Least persistence of a feature, as a fraction of the field's range.
         n_parts : int, optional
             How many labels, the body included.
+        mode : "features" or "nested"
+            Only the features, or also what lies between them when all levels up to this one are overlaid.
 
         Returns
         -------
@@ -115,10 +132,10 @@ class Analysis:
         Raises
         ------
         LevelError
-            If there is no such level, or more than one of the three is given.
+            If there is no such level or mode, or more than one of the three choices is given.
         """
         branches = self.branches()
-        labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts)
+        labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
         of_faces = labels.of_faces(tuple(pieces.of_face for pieces in branches))
         return Segmentation(of_faces, labels.parts, labels.level, labels.warnings)
 
@@ -161,9 +178,12 @@ def analyze(
     values, net = chosen.field.values, chosen.field.net
     links = links_of(net.triangles, len(net.positions))
     progress(0.9, "Ordering the features")
-    hierarchy, arcs = build_hierarchy(
+    bare, arcs = build_hierarchy(
         values, links, minima_are_features=chosen.field.minima_are_features, least_range=chosen.field.least_range
     )
+    progress(0.95, "Measuring the necks")
+    trees = tuple(measured(tree, arc, chosen.field) for tree, arc in zip(bare.trees, arcs, strict=True))
+    hierarchy = dataclasses.replace(bare, trees=trees)
     progress(1.0, "Done")
     warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
     return Analysis(mesh, surface, chosen.field, hierarchy, warnings, links, arcs, chosen.basis)
@@ -204,6 +224,19 @@ def _n_available(surface: Surface, boundary: str) -> int:
     n_vertices = len(np.unique(surface.mesh.triangles))
     n_held = len(np.unique(edges.vertices[edges.n_triangles == 1])) if boundary == "dirichlet" else 1
     return max(n_vertices - n_held, 1)
+
+
+def _solve_for_matching(surface: Surface) -> Eigenbasis:
+    order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)
+    n_functions = min(MATCHING_FUNCTIONS, _n_unknowns(surface, order) - 1)
+    return solve_on_surface(surface, n_functions, order=order)
+
+
+def _n_unknowns(surface: Surface, order: int) -> int:
+    """Return how many unknowns elements of an order have on a surface."""
+    n_vertices, n_triangles = len(np.unique(surface.mesh.triangles)), len(surface.mesh.triangles)
+    n_edges = len(surface.mesh.edges.vertices)
+    return n_vertices + (order - 1) * n_edges + (order - 1) * (order - 2) // 2 * n_triangles
 
 
 def _resolved_order(surface: Surface, order: int | str) -> tuple[int, tuple[str, ...]]:

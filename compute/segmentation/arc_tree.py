@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..mesh import Bools, Ints
+from ..mesh import Bools, Floats, Ints
 from ..msc.merge_tree import MergeTree
 
 
@@ -34,15 +34,25 @@ class ArcTree:
         first of them if it has several. The root has a number that no level reaches.
     n_roots : int
         Parts with the numbers 1 to this have no pair and survive always; the next numbers follow the pairs.
+    n_features : int
+        Pairs that are not noise, in all trees.
+    height : (A,) float64
+        Difference of the field between the two ends of the arc, as a fraction of its range; 0 for the root.
+    closing_length, longest : (A,) float64
+        Length of the level set where the arc closes and at its longest inside; 0 where it was not worth measuring.
     """
 
     is_of_maxima: bool
     n_roots: int
+    n_features: int
     parent: Ints
     part: Ints
     extremum: Ints
     saddle: Ints
     closing: Ints
+    height: Floats
+    closing_length: Floats
+    longest: Floats
 
     @cached_property
     def closing_before(self) -> Ints:
@@ -55,17 +65,34 @@ class ArcTree:
             smallest[part] = min(closing, smallest.get(part, _NEVER))
         return before
 
-    def is_part_root(self, level: int) -> Bools:
-        """Tell which arcs (A,) are whole parts of a level.
+    @cached_property
+    def nested_part(self) -> Ints:
+        """(A,) the number of the part each arc is cut off as when the levels are overlaid.
 
-        These are the arcs of surviving leaves that a surviving saddle closes, the first on the way from the leaf.
+        On the way of a leaf the cut that appears at the lowest level has the leaf's number; every further one has a
+        number of its own, beyond those of the leaves, so that an arm stays the same part when its fingers appear.
         """
-        is_first = (self.closing < level) & (self.closing_before >= level)
-        return is_first & (self.part <= self.n_roots + level)
+        lowest: dict[int, int] = {}
+        for part, closing in zip(self.part.tolist(), self.closing.tolist(), strict=True):
+            lowest[part] = min(closing, lowest.get(part, _NEVER))
+        is_lowest = self.closing == np.array([lowest[part] for part in self.part.tolist()])
+        # The numbers of leaves are followed by those of inner parts between maxima, then between minima.
+        first = 1 + self.n_roots + self.n_features * (1 if self.is_of_maxima else 2)
+        return np.where(
+            is_lowest | (self.closing == _NEVER), self.part, first + np.minimum(self.closing, self.n_features)
+        )
 
-    def part_of_arc(self, level: int) -> Ints:
-        """Return the part (A,) each arc belongs to at a level, 0 for the body."""
-        part = np.where(self.is_part_root(level), self.part, 0)
+    def is_cut(self, level: int) -> Bools:
+        """Tell which arcs (A,) of surviving leaves a surviving saddle closes."""
+        return (self.closing < level) & (self.part <= self.n_roots + level)
+
+    def is_feature(self, level: int) -> Bools:
+        """Tell which arcs (A,) are whole parts of a level: the first cut on the way from each surviving leaf."""
+        return self.is_cut(level) & (self.closing_before >= level)
+
+    def spread(self, part: Ints) -> Ints:
+        """Return the parts (A,) of all arcs, given those of the cut ones and 0 elsewhere."""
+        part = part.copy()
         for arc in range(len(part) - 1, -1, -1):
             if part[arc] == 0 and self.parent[arc] >= 0:
                 part[arc] = part[self.parent[arc]]
@@ -93,37 +120,36 @@ class ArcPlaces:
 _NEVER = np.iinfo(np.int64).max
 
 
-def build_arc_tree(
-    tree: MergeTree,
-    is_of_maxima: bool,
-    part_of_extremum: dict[int, int],
-    closing_of_saddle: dict[int, int],
-    n_roots: int,
-) -> tuple[ArcTree, ArcPlaces]:
-    """Cancel the noise of a merge tree and cut the rest into arcs.
+@dataclass(frozen=True, eq=False)
+class Features:
+    """What is not noise, in all trees of a field.
 
-    Parameters
+    Attributes
     ----------
-    tree : MergeTree
-        With p pairs.
-    is_of_maxima : bool
-        Which sweep the tree comes from.
     part_of_extremum : dict
-        Part of each extremum of this tree that is not noise.
+        The number of the part each extremum stands for: first those without a pair, then by falling persistence.
     closing_of_saddle : dict
-        The ``closing`` of all saddles that are not noise; those of the other kind of extremum cut the arc below them.
+        The place of each saddle's pair by falling persistence, the first of them if it has several.
     n_roots : int
-        Parts that have no pair, in all trees.
+        Extrema without a pair.
     """
-    growth = _Growth(tree, part_of_extremum)
-    for vertex, pair in _events(tree, np.array(list(closing_of_saddle), dtype=np.int64)):
+
+    part_of_extremum: dict[int, int]
+    closing_of_saddle: dict[int, int]
+    n_roots: int
+
+
+def build_arc_tree(tree: MergeTree, is_of_maxima: bool, features: Features) -> tuple[ArcTree, ArcPlaces]:
+    """Cancel the noise of a merge tree and cut the rest into arcs, at the saddles of both kinds of extrema."""
+    growth = _Growth(tree, features)
+    for vertex, pair in _events(tree, np.array(list(features.closing_of_saddle), dtype=np.int64)):
         if pair < 0:
-            growth.cut(vertex, closing_of_saddle[vertex])
-        elif int(tree.extremum[pair]) in part_of_extremum:
-            growth.merge(pair, closing_of_saddle[vertex])
+            growth.cut(vertex)
+        elif int(tree.extremum[pair]) in features.part_of_extremum:
+            growth.merge(pair)
         else:
             growth.swallow(pair)
-    return growth.arc_tree(is_of_maxima, n_roots), growth.places()
+    return growth.arc_tree(is_of_maxima), growth.places()
 
 
 def arc_of_vertex(tree: MergeTree, arcs: ArcTree, places: ArcPlaces) -> Ints:
@@ -160,26 +186,27 @@ def _events(tree: MergeTree, cuts: Ints) -> Iterator[tuple[int, int]]:
 class _Growth:
     """An arc tree while its sweep goes on."""
 
-    def __init__(self, tree: MergeTree, part_of_extremum: dict[int, int]) -> None:
+    def __init__(self, tree: MergeTree, features: Features) -> None:
         self._tree = tree
-        self._part_of_extremum = part_of_extremum
+        self._features = features
         self._opened_at: list[int] = []
         self._parent: list[int] = []
         self._extremum: list[int] = []
         self._saddle: list[int] = []
         self._closing: list[int] = []
         # The youngest arc of each component that goes on, under the name of its oldest extremum.
-        self._open = {extremum: self._new_arc(extremum) for extremum in part_of_extremum}
+        own = [extremum for extremum in features.part_of_extremum if tree.basin[extremum] == extremum]
+        self._open = {extremum: self._new_arc(extremum) for extremum in own}
         self._survivor: dict[int, int] = {}
         self._swallowed: list[tuple[int, int, int]] = []
         self._entry = dict(self._open)
 
-    def merge(self, pair: int, closing: int) -> None:
+    def merge(self, pair: int) -> None:
         """Close the arcs of both components of a pair and open the one behind the saddle."""
         young, saddle, old = self._row(pair)
         arc = self._new_arc(old, saddle)
         for component in (young, old):
-            self._close(self._open.pop(component), arc, saddle, closing)
+            self._close(self._open.pop(component), arc, saddle)
         self._open[old] = arc
         self._survivor[young] = old
 
@@ -191,20 +218,21 @@ class _Growth:
         if old in self._open:
             self._entry[young] = self._open[old]
 
-    def cut(self, vertex: int, closing: int) -> None:
+    def cut(self, vertex: int) -> None:
         """Close the arc just below a vertex, and go on with a new one."""
         component = self._component(int(self._tree.basin[vertex]))
         arc = self._open.get(component)
         if arc is None or self._opened_at[arc] == vertex:
             return
         self._open[component] = self._new_arc(self._extremum[arc], vertex)
-        self._close(arc, self._open[component], vertex, closing)
+        self._close(arc, self._open[component], vertex)
 
-    def arc_tree(self, is_of_maxima: bool, n_roots: int) -> ArcTree:
+    def arc_tree(self, is_of_maxima: bool) -> ArcTree:
         """Return what has grown."""
-        part = [self._part_of_extremum[extremum] for extremum in self._extremum]
-        columns = (self._parent, part, self._extremum, self._saddle, self._closing)
-        return ArcTree(is_of_maxima, n_roots, *(np.array(column, dtype=np.int64) for column in columns))
+        part = [self._features.part_of_extremum[extremum] for extremum in self._extremum]
+        columns = (np.array(column) for column in (self._parent, part, self._extremum, self._saddle, self._closing))
+        n_features = len(self._features.part_of_extremum) - self._features.n_roots
+        return ArcTree(is_of_maxima, self._features.n_roots, n_features, *columns, *np.zeros((3, len(part))))
 
     def places(self) -> ArcPlaces:
         """Return where the basins of all extrema start."""
@@ -236,5 +264,6 @@ class _Growth:
         self._closing.append(_NEVER)
         return len(self._parent) - 1
 
-    def _close(self, arc: int, parent: int, saddle: int, closing: int) -> None:
-        self._parent[arc], self._saddle[arc], self._closing[arc] = parent, saddle, closing
+    def _close(self, arc: int, parent: int, saddle: int) -> None:
+        self._parent[arc], self._saddle[arc] = parent, saddle
+        self._closing[arc] = self._features.closing_of_saddle[saddle]

@@ -9,7 +9,7 @@ from ..mesh import Bools, Floats, Ints
 from ..msc.critical_points import rank_vertices
 from ..msc.links import Links
 from ..msc.merge_tree import MergeTree, merge_tree
-from .arc_tree import ArcTree, arc_of_vertex, build_arc_tree
+from .arc_tree import ArcTree, Features, arc_of_vertex, build_arc_tree
 
 # Pairs below this fraction of the field's range are noise of the triangulation (Reuter 2009, section 4.3).
 NOISE_THRESHOLD = 1e-4
@@ -106,7 +106,7 @@ def build_hierarchy(
     pairs, persistence, is_maximum = _pairs_by_persistence(values, sweeps)
     noise = max(NOISE_THRESHOLD * value_range, np.inf if value_range < least_range else 0.0)
     n_features = int((persistence > noise).sum())
-    trees, arcs = _grow_trees(sweeps, pairs[::-1][:n_features], is_maximum[::-1][:n_features])
+    trees, arcs = _grow_trees(sweeps, pairs[::-1][:n_features])
     return Hierarchy(pairs, persistence, is_maximum, value_range, n_features + 1, trees), arcs
 
 
@@ -118,9 +118,7 @@ def _pairs_by_persistence(values: Floats, sweeps: list[_Sweep]) -> tuple[Ints, F
     return pairs[order], persistence[order], is_maximum[order]
 
 
-def _grow_trees(
-    sweeps: list[_Sweep], features: Ints, is_maximum: Bools
-) -> tuple[tuple[ArcTree, ...], tuple[Ints, ...]]:
+def _grow_trees(sweeps: list[_Sweep], features: Ints) -> tuple[tuple[ArcTree, ...], tuple[Ints, ...]]:
     """Build the arc tree of each sweep; ``features`` are the pairs above the noise, by falling persistence."""
     roots = [extremum for sweep in sweeps for extremum in sweep.tree.roots.tolist()]
     part = {extremum: number for number, extremum in enumerate([*roots, *features[:, 0].tolist()], start=1)}
@@ -128,9 +126,7 @@ def _grow_trees(
     closing_of_saddle = {saddle: place for place, saddle in reversed(list(enumerate(features[:, 1].tolist())))}
     trees, arcs = [], []
     for sweep in sweeps:
-        extrema = [*sweep.tree.roots.tolist(), *features[is_maximum == sweep.is_of_maxima, 0].tolist()]
-        part_of_extremum = {extremum: part[extremum] for extremum in extrema}
-        tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, part_of_extremum, closing_of_saddle, len(roots))
+        tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, Features(part, closing_of_saddle, len(roots)))
         trees.append(tree)
         arcs.append(arc_of_vertex(sweep.tree, tree, places))
     return tuple(trees), tuple(arcs)

@@ -8,11 +8,14 @@ from numpy.typing import NDArray
 
 from ..errors import LevelError
 from ..mesh import Floats, Ints
+from .arc_tree import ArcTree
 from .branches import Branches, repaired_labels
 from .faces import sum_by
 from .hierarchy import Hierarchy
+from .nesting import nested_cuts
 
 BODY = 0
+MODES = ("features", "nested")
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +27,7 @@ class Parts:
     id : (P,) int64
         Label of the part; 0 is the body. A part has the same id at every level.
     parent : (P,) int64
-        Id of the part it belongs to.
+        Id of the part it grows out of; 0 for the body.
     extremum, saddle : (P,) int64
         Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body.
     area : (P,) float64
@@ -103,6 +106,7 @@ def label_branches(
     level: int | None = None,
     threshold: float | None = None,
     n_parts: int | None = None,
+    mode: str = "features",
 ) -> BranchLabels:
     """Label the branches at one level.
 
@@ -117,37 +121,49 @@ def label_branches(
         Least persistence of a part, as a fraction of the field's range.
     n_parts : int, optional
         Number of labels, the body included; where it cannot be reached, the largest below it.
+    mode : "features" or "nested"
+        Only the features, or also what lies between them when all levels up to this one are overlaid.
 
     Raises
     ------
     LevelError
-        If the level does not exist, or more than one of the three is given.
+        If the level or the mode does not exist, or more than one of the three choices is given.
     """
+    if mode not in MODES:
+        raise LevelError(f'The mode is "features" or "nested", not "{mode}".')
     if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
         raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
     if n_parts is not None:
-        return _reach_number(hierarchy, branches, n_parts)
+        return _reach_number(hierarchy, branches, n_parts, mode)
     if level is None:
         level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
-    return _at_level(hierarchy, branches, hierarchy.checked_level(level))
+    return _at_level(hierarchy, branches, hierarchy.checked_level(level), mode)
 
 
-def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int) -> BranchLabels:
+def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str) -> BranchLabels:
+    cuts = [_cut_arcs(tree, pieces, level, mode) for tree, pieces in zip(hierarchy.trees, branches, strict=True)]
     of_branch = tuple(
-        repaired_labels(tree.part_of_arc(level)[pieces.arc], pieces)
-        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
+        repaired_labels(tree.spread(cut)[pieces.arc], pieces)
+        for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True)
     )
-    return BranchLabels(level, of_branch, _tabulate(hierarchy, branches, level, of_branch))
+    return BranchLabels(level, of_branch, _tabulate(hierarchy, branches, cuts, of_branch))
 
 
-def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts: int) -> BranchLabels:
+def _cut_arcs(tree: ArcTree, pieces: Branches, level: int, mode: str) -> Ints:
+    """Return the part that is cut off at each arc, 0 where nothing is."""
+    if mode == "features":
+        return np.where(tree.is_feature(level), tree.part, BODY)
+    area = sum_by(pieces.arc, pieces.area, len(tree.part)) / pieces.area.sum()
+    return np.where(nested_cuts(tree, level, area), tree.nested_part, BODY)
+
+
+def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts: int, mode: str) -> BranchLabels:
     """Return the lowest level with that many labels, or with the most below it."""
     if n_parts < 1:
         raise LevelError(f"The number of parts is at least 1, not {n_parts}.")
-    best = _at_level(hierarchy, branches, 0)
-    # A level more adds one part, or three where it is the first with both kinds of extrema.
-    for level in range(max(1, n_parts - 3), hierarchy.n_levels):
-        labels = _at_level(hierarchy, branches, level)
+    best = _at_level(hierarchy, branches, 0, mode)
+    for level in range(1, hierarchy.n_levels):
+        labels = _at_level(hierarchy, branches, level, mode)
         if len(labels.parts) > n_parts:
             break
         if len(labels.parts) > len(best.parts):
@@ -158,20 +174,20 @@ def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts:
     return BranchLabels(best.level, best.of_branch, best.parts, (warning,))
 
 
-def _tabulate(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, of_branch: tuple[Ints, ...]) -> Parts:
+def _tabulate(
+    hierarchy: Hierarchy, branches: tuple[Branches, ...], cuts: list[Ints], of_branch: tuple[Ints, ...]
+) -> Parts:
     n_labels = 1 + max(int(labels.max(initial=0)) for labels in of_branch)
-    area, n_faces = np.zeros(n_labels), np.zeros(n_labels, dtype=np.int64)
-    extremum, saddle = np.full(n_labels, -1), np.full(n_labels, -1)
-    for tree, pieces, labels in zip(hierarchy.trees, branches, of_branch, strict=True):
+    area, n_faces = np.zeros(n_labels), np.zeros(n_labels)
+    parent, extremum, saddle = np.zeros(n_labels, dtype=np.int64), np.full(n_labels, -1), np.full(n_labels, -1)
+    for tree, pieces, cut, labels in zip(hierarchy.trees, branches, cuts, of_branch, strict=True):
         area += sum_by(labels, pieces.area, n_labels)
-        n_faces += sum_by(labels, pieces.n_faces.astype(float), n_labels).astype(np.int64)
-        roots = np.flatnonzero(tree.is_part_root(level) & (tree.part < n_labels))
-        extremum[tree.part[roots]], saddle[tree.part[roots]] = tree.extremum[roots], tree.saddle[roots]
-    # Every tree counts as body what belongs to the parts of the other.
-    n_trees = len(branches)
+        n_faces += sum_by(labels, pieces.n_faces.astype(float), n_labels)
+        arcs = np.flatnonzero((cut > BODY) & (cut < n_labels))
+        extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
+        parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
+    # To every tree the parts of the others are body.
     area[BODY] = branches[0].area.sum() - area[1:].sum()
     n_faces[BODY] = branches[0].n_faces.sum() - n_faces[1:].sum()
-    if n_trees and n_faces[BODY] == 0:
-        area[BODY] = 0.0
     ids = np.flatnonzero(n_faces > 0)
-    return Parts(ids, np.zeros(len(ids), dtype=np.int64), extremum[ids], saddle[ids], area[ids], n_faces[ids])
+    return Parts(ids, parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids].astype(np.int64))

@@ -18,7 +18,7 @@ def smooth_and_noisy_field(mesh, seed):
 def parts_of_hierarchy(hierarchy, arcs, level):
     found = {}
     for tree, arc in zip(hierarchy.trees, arcs, strict=True):
-        part = tree.part_of_arc(level)[arc]
+        part = tree.spread(np.where(tree.is_feature(level), tree.part, 0))[arc]
         tips = {int(p): int(e) for p, e in zip(tree.part, tree.extremum, strict=True)}
         found |= {
             (tree.is_of_maxima, tips[p]): set(np.flatnonzero(part == p).tolist()) for p in set(part.tolist()) - {0}
@@ -62,7 +62,7 @@ def test_a_part_keeps_its_number_at_every_level():
     )
     tree = hierarchy.trees[0]
     for level in range(hierarchy.n_levels):
-        roots = tree.is_part_root(level)
+        roots = tree.is_feature(level)
         assert tree.part[roots].max(initial=0) <= level + 1
         assert len(set(tree.part[roots])) == roots.sum()
 
