@@ -1,17 +1,19 @@
 """Characters: a quad mesh with bones, skinning weights, poses and true parts."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from .magnifier import Magnifiers
+from .parts import heaviest_part, majority
 from .rig import Bone, Pose, bone_motions, mirrored_name
 from .skinning import blend_skinning, diffused_weights
 from .solids import Body
-from .surface_net import mesh_body, mirror_of_vertex
+from .surface_net import QuadMesh, mesh_body, mirror_of_vertex
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,6 +35,8 @@ class Plan:
         The true parts, coarse and fine.
     magnifiers : Magnifiers
         Where the mesh is finer.
+    genus : int
+        How many handles the body has.
     """
 
     name: str
@@ -41,7 +45,8 @@ class Plan:
     poses: Mapping[str, Pose]
     part_of_bone: Mapping[str, str]
     fine_part_of_bone: Mapping[str, str]
-    magnifiers: Magnifiers = Magnifiers()
+    magnifiers: Magnifiers = field(default_factory=Magnifiers)
+    genus: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +62,12 @@ class Character:
         Counter-clockwise seen from outside; the first diagonal is the shorter one.
     weights : (V, B) float64
         Share of each bone in each vertex; rows sum to one.
-    bone_of_vertex : (V,) int64
-        The bone that each vertex belongs to.
     """
 
     plan: Plan
     vertices: Floats
     quads: Ints
     weights: Floats
-    bone_of_vertex: Ints
 
     @property
     def name(self) -> str:
@@ -90,22 +92,32 @@ class Character:
     @cached_property
     def part_names(self) -> tuple[str, ...]:
         """The coarse parts: head, torso, arm.L ..."""
-        return tuple(dict.fromkeys(self.plan.part_of_bone[bone.name] for bone in self.bones))
+        return _names(self.bones, self.plan.part_of_bone)
 
     @cached_property
     def fine_part_names(self) -> tuple[str, ...]:
         """The fine parts: head, neck, upper_arm.L, index.L ..."""
-        return tuple(dict.fromkeys(self.plan.fine_part_of_bone[bone.name] for bone in self.bones))
+        return _names(self.bones, self.plan.fine_part_of_bone)
 
     @cached_property
     def part_of_vertex(self) -> Ints:
-        """(V,) index into ``part_names``."""
-        return self._merged(self.part_names, self.plan.part_of_bone)
+        """(V,) index into ``part_names``: the part whose bones have the most weight; each part is one piece."""
+        return self._heaviest(self.part_names, self.plan.part_of_bone)
 
     @cached_property
     def fine_part_of_vertex(self) -> Ints:
         """(V,) index into ``fine_part_names``."""
-        return self._merged(self.fine_part_names, self.plan.fine_part_of_bone)
+        return self._heaviest(self.fine_part_names, self.plan.fine_part_of_bone)
+
+    @property
+    def part_of_quad(self) -> Ints:
+        """(Q,) index into ``part_names``."""
+        return majority(self.part_of_vertex, self.quads)
+
+    @property
+    def fine_part_of_quad(self) -> Ints:
+        """(Q,) index into ``fine_part_names``."""
+        return majority(self.fine_part_of_vertex, self.quads)
 
     @cached_property
     def mirror_of_vertex(self) -> Ints:
@@ -116,9 +128,9 @@ class Character:
         """Return the (V, 3) vertices in a named pose."""
         return blend_skinning(self.vertices, self.weights, bone_motions(self.bones, self.poses[pose]))
 
-    def _merged(self, names: tuple[str, ...], part_of_bone: Mapping[str, str]) -> Ints:
-        part = np.array([names.index(part_of_bone[bone.name]) for bone in self.bones])
-        return part[self.bone_of_vertex]
+    def _heaviest(self, names: tuple[str, ...], part_of_bone: Mapping[str, str]) -> Ints:
+        column = [names.index(part_of_bone[bone.name]) for bone in self.bones]
+        return heaviest_part(self.weights @ np.eye(len(names))[column], self.quads)
 
 
 def build(plan: Plan, n_vertices: int) -> Character:
@@ -130,12 +142,41 @@ def build(plan: Plan, n_vertices: int) -> Character:
         If the plan has parts too thin for that few vertices.
     """
     mesh = mesh_body(plan.body, n_vertices, plan.magnifiers)
-    number = {bone.name: i for i, bone in enumerate(plan.bones)}
-    nearest, radius = plan.body.nearest_solid(mesh.vertices)
-    bone_of_vertex = np.array([number[solid.bone] for solid in plan.body.solids])[nearest]
-    triangles = mesh.quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
-    weights = diffused_weights(mesh.vertices, triangles, bone_of_vertex, len(plan.bones), radius)
+    if not (_has_handles(mesh, plan.genus) and _has_tips(mesh, plan.bones)):
+        raise ValueError(f"{n_vertices} vertices are too few to keep the parts of the {plan.name} whole and apart.")
+    weights = _weights(plan, mesh)
     if plan.body.symmetric:
-        mirrored_bone = [number[mirrored_name(bone.name)] for bone in plan.bones]
+        mirrored_bone = [_number(plan.bones)[mirrored_name(bone.name)] for bone in plan.bones]
         weights = 0.5 * (weights + weights[mirror_of_vertex(mesh.vertices)][:, mirrored_bone])
-    return Character(plan, mesh.vertices, mesh.quads, weights, bone_of_vertex)
+    return Character(plan, mesh.vertices, mesh.quads, weights)
+
+
+def _weights(plan: Plan, mesh: QuadMesh) -> Floats:
+    """Return the weights that pass smoothly between the flesh of one bone and that of the next."""
+    nearest, radius = plan.body.nearest_solid(mesh.vertices)
+    bone_of_solid = np.array([_number(plan.bones)[solid.bone] for solid in plan.body.solids])
+    triangles = mesh.quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+    return diffused_weights(mesh.vertices, triangles, bone_of_solid[nearest], len(plan.bones), radius)
+
+
+def _has_handles(mesh: QuadMesh, genus: int) -> bool:
+    """Whether the mesh has so many handles; each quad of a closed mesh has two edges to itself."""
+    return len(mesh.vertices) - len(mesh.quads) == 2 - 2 * genus
+
+
+def _has_tips(mesh: QuadMesh, bones: tuple[Bone, ...]) -> bool:
+    """Whether the mesh reaches over most of each bone that is the last of its chain."""
+    parents = {bone.parent for bone in bones}
+    last = [bone for bone in bones if bone.name not in parents]
+    heads, tails = np.array([bone.head for bone in last]), np.array([bone.tail for bone in last])
+    missing, _ = cKDTree(mesh.vertices).query(tails)
+    return bool((missing < np.linalg.norm(tails - heads, axis=1)).all())
+
+
+def _names(bones: tuple[Bone, ...], part_of_bone: Mapping[str, str]) -> tuple[str, ...]:
+    """Return each part once, in the order of the bones."""
+    return tuple(dict.fromkeys(part_of_bone[bone.name] for bone in bones))
+
+
+def _number(bones: tuple[Bone, ...]) -> dict[str, int]:
+    return {bone.name: i for i, bone in enumerate(bones)}

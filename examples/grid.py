@@ -22,6 +22,8 @@ Bools = NDArray[np.bool_]
 
 # Cells along the side of a block; the field is computed point by point only in blocks that the surface can reach.
 BLOCK = 8
+# Distances to squashed solids are estimates, so a block counts as reached from this many times its radius.
+CAUTION = 1.25
 # Each flip takes away one bad meeting and may make another; a body that needs more rounds is thinner than the grid.
 MAX_REPAIRS = 50
 
@@ -50,9 +52,9 @@ def sample(body: Body, cell: float, magnifiers: Magnifiers) -> Grid:
     origin, blocks = _layout(magnified_bounds(body, magnifiers), cell)
     corners = BLOCK * _lattice(*blocks)
     coarse, _ = body.distance(magnifiers.shrunk(origin + cell * (corners + 0.5 * (BLOCK - 1))))
-    reached = np.abs(coarse) < 0.5 * np.sqrt(3.0) * BLOCK * cell + body.widest_blend
+    reached = np.abs(coarse) < CAUTION * 0.5 * np.sqrt(3.0) * BLOCK * cell
     points = origin + cell * (corners[reached][:, None] + _lattice(BLOCK, BLOCK, BLOCK))
-    fine, _ = body.distance(magnifiers.shrunk(points.reshape(-1, 3)), 2.0 * cell + body.widest_blend)
+    fine, _ = body.distance(magnifiers.shrunk(points.reshape(-1, 3)), 2.0 * cell)
     values = np.repeat(coarse[:, None].astype(np.float32), BLOCK**3, axis=1)
     values[reached] = fine.reshape(-1, BLOCK**3)
     return Grid(origin, cell, _joined(values, blocks))
@@ -79,7 +81,7 @@ def well_composed_inside(values: NDArray[np.float32]) -> Bools:
             return inside
         inside[tuple(weak.T)] ^= True
         inside = _largest_piece(inside)
-    raise ValueError("The body is too thin for a mesh this coarse; ask for more vertices.")
+    raise ValueError("Parts of the body are too thin for a mesh this coarse; ask for more vertices.")
 
 
 def mixed_cells(inside: Bools) -> Bools:
@@ -104,13 +106,13 @@ def _lattice(nx: int, ny: int, nz: int) -> Ints:
     return np.stack(np.meshgrid(np.arange(nx), np.arange(ny), np.arange(nz), indexing="ij"), axis=-1).reshape(-1, 3)
 
 
-def _joined(values: NDArray, blocks: Ints) -> NDArray:
+def _joined(values: NDArray[np.float32], blocks: Ints) -> NDArray[np.float32]:
     """Return one array out of the blocks."""
     apart = values.reshape(*blocks, BLOCK, BLOCK, BLOCK)
     return np.ascontiguousarray(apart.transpose(0, 3, 1, 4, 2, 5)).reshape(BLOCK * blocks)
 
 
-def _shifted(points: NDArray, step: tuple[int, ...]) -> NDArray:
+def _shifted(points: Bools, step: tuple[int, ...]) -> Bools:
     """Return the points at one corner of all cells."""
     return points[tuple(slice(s, n - 1 + s) for s, n in zip(step, points.shape, strict=True))]
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .character import Character, Plan, build
 from .rig import Bone, Point, Pose
@@ -34,7 +35,7 @@ class Finger:
     radii: tuple[float, float]
 
     @property
-    def joints(self) -> np.ndarray:
+    def joints(self) -> NDArray[np.float64]:
         """(4, 3) knuckle, two joints and the tip; each bone is bent down a little more than the one before."""
         slope = np.radians(self.slope + np.array([0.0, 7.0, 14.0]))
         splay = np.radians(self.splay)
@@ -54,7 +55,7 @@ FINGER_NAMES = tuple(finger.name for finger in FINGERS)
 
 
 def hand(n_vertices: int = 5000) -> Character:
-    """Return a left hand with a wrist and about ``n_vertices`` vertices; it is not symmetric.
+    """Return a left hand with a wrist and about ``n_vertices`` vertices, at least 1500; it is not symmetric.
 
     Raises
     ------
@@ -151,10 +152,10 @@ def _placed(point: Point, wrist: Point, size: float) -> Point:
 POSES = {
     "rest": Pose(),
     "grip": Pose(curled(38.0) | {"thumb_1.L": (-25.0, 0.0, 0.0), "thumb_2.L": (0.0, 0.0, 25.0)}),
-    "fist": Pose(curled(66.0) | {"thumb_1.L": (-35.0, 0.0, 10.0), "thumb_2.L": (0.0, 0.0, 35.0)}),
-    "point": Pose(curled(62.0, FINGER_NAMES[1:4]) | {"thumb_1.L": (-30.0, 0.0, 10.0), "thumb_2.L": (0.0, 0.0, 30.0)}),
+    "fist": Pose(curled(56.0) | {"thumb_1.L": (-35.0, 0.0, 10.0), "thumb_2.L": (0.0, 0.0, 35.0)}),
+    "point": Pose(curled(54.0, FINGER_NAMES[1:4]) | {"thumb_1.L": (-30.0, 0.0, 10.0), "thumb_2.L": (0.0, 0.0, 30.0)}),
     "victory": Pose(
-        curled(62.0, FINGER_NAMES[2:4])
+        curled(54.0, FINGER_NAMES[2:4])
         | {
             "thumb_1.L": (-30.0, 0.0, 20.0),
             "thumb_2.L": (0.0, 0.0, 40.0),

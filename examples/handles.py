@@ -34,7 +34,7 @@ def _plan(genus: int) -> Plan:
     )
     solids = tuple(solid for name, x in zip(names, centres, strict=True) for solid in _ring(name, float(x)))
     own_part = {name: name for name in names}
-    return Plan("handles", bones, Body(solids, symmetric=False), _poses(names), own_part, own_part)
+    return Plan("handles", bones, Body(solids, symmetric=False), _poses(names), own_part, own_part, genus=genus)
 
 
 def _ring(bone: str, x: float) -> list[Solid]:

@@ -2,8 +2,8 @@
 
 from .character import Character, Plan, build
 from .hand import FINGER_NAMES, hand_bones, hand_solids
-from .magnifier import Magnifier, Magnifiers
 from .humanoid_poses import POSES
+from .magnifier import Magnifier, Magnifiers
 from .rig import Bone, with_mirrored_bones
 from .solids import Body, Solid, with_mirrored_solids
 
@@ -76,7 +76,7 @@ FACE = Magnifier(axis=2, begin=1.42, full=1.50, factor=1.5, centre=(0.0, 0.0, 0.
 
 
 def humanoid(n_vertices: int = 8000) -> Character:
-    """Return a human with about ``n_vertices`` vertices.
+    """Return a human with about ``n_vertices`` vertices, at least 4000.
 
     Raises
     ------

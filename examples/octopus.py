@@ -1,11 +1,13 @@
 """An octopus with a bulbous mantle, a head with two eyes and eight tapering arms."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .character import Character, Plan, build
-from .magnifier import Magnifiers
 from .rig import Bone, Point, Pose, both_sides, with_mirrored_bones
 from .solids import Body, Solid, with_mirrored_solids
+
+Floats = NDArray[np.float64]
 
 # Arms are counted from the front; degrees from the front towards the left.
 ARM_DIRECTIONS = {"arm_1": 22.0, "arm_2": 67.0, "arm_3": 113.0, "arm_4": 158.0}
@@ -19,7 +21,7 @@ BODY_BONES = (
     Bone("mantle", "head", (0.0, 0.02, 0.48), (0.0, 0.25, 1.05)),
 )
 BODY = (
-    Solid("head", (0.0, 0.0, 0.25), (0.0, 0.015, 0.43), (0.190, 0.135), blend=0.05),
+    Solid("head", (0.0, 0.0, 0.325), (0.0, 0.015, 0.43), (0.155, 0.135), blend=0.05),
     Solid("head", (0.088, -0.075, 0.475), (0.095, -0.090, 0.490), (0.066, 0.062), blend=0.04),
     Solid("head", (0.118, -0.122, 0.498), (0.118, -0.122, 0.498), (0.040, 0.040), blend=0.006),
     Solid("mantle", (0.0, 0.120, 0.74), (0.0, 0.215, 0.87), (0.235, 0.205), (1.03, 1.0, 1.0), blend=0.10),
@@ -27,7 +29,7 @@ BODY = (
 
 
 def octopus(n_vertices: int = 8000) -> Character:
-    """Return an octopus with about ``n_vertices`` vertices.
+    """Return an octopus with about ``n_vertices`` vertices, at least 4000.
 
     Raises
     ------
@@ -56,24 +58,24 @@ def _part(bone: str) -> str:
     return bone[:5] + bone[-2:] if bone.startswith("arm") else "head"
 
 
-def _arm_joints(direction: float) -> np.ndarray:
+def _arm_joints(direction: float) -> Floats:
     """(9, 3) joints of an arm that falls to the ground, runs along it and lifts its tip."""
     along = np.linspace(0.0, 1.0, BONES_OF_ARM + 1)
     slope = np.radians(np.interp(along[:-1], [0.0, 0.25, 0.5, 0.75, 1.0], [-26.0, -18.0, -4.0, 16.0, 50.0]))
     steps = ARM_LENGTH / BONES_OF_ARM * np.column_stack([np.cos(slope), np.sin(slope)])
-    way = np.concatenate([[[0.0, 0.0]], np.cumsum(steps, axis=0)]) + (ROOT_DISTANCE, ROOT_HEIGHT)
+    way = np.cumsum([(ROOT_DISTANCE, ROOT_HEIGHT), *steps], axis=0)
     # Each arm swings a little to the back as it goes out.
     heading = np.radians(direction + 10.0 * along**2)
     return np.column_stack([way[:, 0] * np.sin(heading), -way[:, 0] * np.cos(heading), way[:, 1]])
 
 
-def _arm_bones(arm: str, joints: np.ndarray) -> list[Bone]:
+def _arm_bones(arm: str, joints: Floats) -> list[Bone]:
     names = [f"{arm}_{i}.L" for i in range(1, BONES_OF_ARM + 1)]
     parents = ["head", *names[:-1]]
     return [Bone(names[i], parents[i], _point(joints[i]), _point(joints[i + 1])) for i in range(BONES_OF_ARM)]
 
 
-def _arm_solids(arm: str, joints: np.ndarray) -> list[Solid]:
+def _arm_solids(arm: str, joints: Floats) -> list[Solid]:
     radii = ARM_ROOT + (ARM_TIP - ARM_ROOT) * np.linspace(0.0, 1.0, BONES_OF_ARM + 1) ** 0.8
     joints = joints.copy()
     joints[0] *= (0.5, 0.5, 1.0)
@@ -89,7 +91,7 @@ def _arm_solids(arm: str, joints: np.ndarray) -> list[Solid]:
     ]
 
 
-def _point(values: np.ndarray) -> Point:
+def _point(values: Floats) -> Point:
     x, y, z = values
     return (float(x), float(y), float(z))
 
@@ -109,7 +111,8 @@ def _all_arms(upwards: float, sideways: float, bones: range) -> dict[str, Point]
 POSES = {
     "rest": Pose(),
     "swim": Pose(
-        both_sides(_all_arms(-9.0, 0.0, range(1, 5)) | _all_arms(-12.0, 8.0, range(5, 9))) | {"mantle": (12.0, 0.0, 0.0)},
+        both_sides(_all_arms(-9.0, 0.0, range(1, 5)) | _all_arms(-12.0, 8.0, range(5, 9)))
+        | {"mantle": (12.0, 0.0, 0.0)},
         shift=(0.0, 0.0, 1.0),
     ),
     "reach": Pose(

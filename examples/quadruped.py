@@ -36,7 +36,7 @@ TRUNK = (
     Solid("loin", (0.0, 0.020, 0.555), (0.0, 0.230, 0.575), (0.112, 0.090), (0.86, 1.0, 1.0), blend=0.03),
     Solid("hips", (0.0, 0.240, 0.575), (0.0, 0.300, 0.565), (0.090, 0.100), (0.95, 1.0, 1.0), blend=0.03),
     *(
-        Solid(f"tail_{i + 1}", TAIL[i], TAIL[i + 1], TAIL_RADII[i : i + 2], blend=0.010 if i else 0.05)
+        Solid(f"tail_{i + 1}", TAIL[i], TAIL[i + 1], (TAIL_RADII[i], TAIL_RADII[i + 1]), blend=0.010 if i else 0.05)
         for i in range(4)
     ),
 )
@@ -54,14 +54,14 @@ LEGS = (
     Solid("fore_shin.L", ELBOW, WRIST, (0.043, 0.0285), blend=0.010),
     Solid("fore_paw.L", WRIST, FORE_FOOT, (0.0285, 0.033), blend=0.006),
     Solid("fore_toes.L", FORE_FOOT, (0.096, -0.252, 0.030), (0.035, 0.030), (1.2, 1.0, 0.95), blend=0.010),
-    Solid("hind_thigh.L", (0.065, 0.275, 0.530), KNEE, (0.104, 0.054), (0.76, 1.0, 1.0), blend=0.05),
+    Solid("hind_thigh.L", (0.076, 0.275, 0.530), KNEE, (0.100, 0.054), (0.70, 1.0, 1.0), blend=0.05),
     Solid("hind_shin.L", KNEE, HOCK, (0.052, 0.029), (0.9, 1.0, 1.0), blend=0.012),
     Solid("hind_paw.L", HOCK, HIND_FOOT, (0.029, 0.031), blend=0.006),
     Solid("hind_toes.L", HIND_FOOT, (0.100, 0.287, 0.030), (0.034, 0.030), (1.2, 1.0, 0.95), blend=0.010),
 )
 
-# Only the head is this far in front, and the tail this far behind.
-MUZZLE = Magnifier(axis=1, begin=0.33, full=0.45, factor=1.4, centre=(0.0, 0.0, 0.0))
+# Only the head is this high.
+HEAD_MAGNIFIER = Magnifier(axis=2, begin=0.66, full=0.76, factor=1.4, centre=(0.0, -0.40, 0.0))
 
 POSES = {
     "rest": Pose(),
@@ -85,11 +85,11 @@ POSES = {
     "run": Pose(
         both_sides(
             {
-                "fore_arm.L": (-58.0, 0.0, 0.0),
-                "fore_shin.L": (22.0, 0.0, 0.0),
-                "hind_thigh.L": (48.0, 0.0, 0.0),
+                "fore_arm.L": (-42.0, 0.0, 0.0),
+                "fore_shin.L": (10.0, 0.0, 0.0),
+                "hind_thigh.L": (36.0, 0.0, 0.0),
                 "hind_shin.L": (-14.0, 0.0, 0.0),
-                "hind_paw.L": (26.0, 0.0, 0.0),
+                "hind_paw.L": (30.0, 0.0, 0.0),
                 "ear.L": (-30.0, 0.0, 0.0),
             }
         )
@@ -108,7 +108,7 @@ POSES = {
             }
         )
         | {"hips": (-38.0, 0.0, 0.0), "neck": (18.0, 0.0, 0.0), "head": (16.0, 0.0, 0.0), "tail_1": (30.0, 0.0, 15.0)},
-        shift=(0.0, 0.0, -0.2),
+        shift=(0.0, 0.0, -0.334),
     ),
     "look": Pose(
         {
@@ -118,15 +118,15 @@ POSES = {
             "tail_2": (-30.0, 0.0, 0.0),
             "tail_3": (-30.0, 0.0, 0.0),
             "fore_arm.R": (-40.0, 0.0, 0.0),
-            "fore_shin.R": (80.0, 0.0, 0.0),
-            "fore_paw.R": (40.0, 0.0, 0.0),
+            "fore_shin.R": (70.0, 0.0, 0.0),
+            "fore_paw.R": (25.0, 0.0, 0.0),
         }
     ),
 }
 
 
 def quadruped(n_vertices: int = 8000) -> Character:
-    """Return a four-legged animal with about ``n_vertices`` vertices.
+    """Return a four-legged animal with about ``n_vertices`` vertices, at least 2000.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def _plan() -> Plan:
         poses=POSES,
         part_of_bone={bone.name: _part(bone.name) for bone in bones},
         fine_part_of_bone={bone.name: _fine_part(bone.name) for bone in bones},
-        magnifiers=Magnifiers((MUZZLE,)),
+        magnifiers=Magnifiers((HEAD_MAGNIFIER,)),
     )
 
 

@@ -116,19 +116,23 @@ class Body:
         corners = np.array(np.meshgrid(*3 * [[0, 1]])).reshape(3, -1).T
         return boxes[:, corners, np.arange(3)].reshape(-1, 3)
 
-    @property
-    def widest_blend(self) -> float:
-        """The width of the widest fillet."""
-        return max(solid.blend for solid in self.solids)
+    @cached_property
+    def reaches(self) -> tuple[float, ...]:
+        """How far from each solid it still matters for the surface: the widest fillet with a later one that is near."""
+        low, high = np.array([solid.bounds for solid in self.solids]).swapaxes(0, 1)
+        blends = np.array([solid.blend for solid in self.solids])
+        gaps = np.maximum(low[:, None] - high, low - high[:, None]).max(axis=2)
+        matters = np.triu(gaps < blends)
+        return tuple(np.where(matters, blends, 0.0).max(axis=1).tolist())
 
-    def distance(self, points: Floats, margin: float = FAR) -> tuple[Floats, Floats]:
+    def distance(self, points: Floats, slack: float = FAR) -> tuple[Floats, Floats]:
         """Return the signed distance and its gradient.
 
         Parameters
         ----------
         points : (n, 3) float64
-        margin : float
-            Solids farther than this from a point are left out; the distance there is ``FAR`` if no other is near.
+        slack : float
+            The result is exact where it is smaller than this; elsewhere only its sign is right.
 
         Returns
         -------
@@ -138,8 +142,8 @@ class Body:
         folded = self._folded(points)
         coordinates = np.ascontiguousarray(folded.T)
         value, gradient = np.full(len(points), FAR), np.zeros((len(points), 3))
-        for solid in self.solids:
-            near = _rows_near(coordinates, solid, margin)
+        for solid, reach in zip(self.solids, self.reaches, strict=True):
+            near = _rows_near(coordinates, solid, slack + reach)
             value[near], gradient[near] = _smooth_union(
                 value[near], gradient[near], *solid.distance(folded[near]), solid.blend
             )

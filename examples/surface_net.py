@@ -29,6 +29,9 @@ MAX_TRIES = 5
 # Rounds of evening out, and final steps onto the surface.
 ROUNDS, FINAL_STEPS = 12, 3
 
+# No vertex of a usable net is farther from the surface than this, in metres.
+SLACK = 0.03
+
 CORNERS = np.array(list(product((0, 1), repeat=3)))
 CELL_EDGES = np.array([(a, a + step) for step in (1, 2, 4) for a in range(8) if not a & step])
 
@@ -152,8 +155,11 @@ def _neighbour_average(quads: Ints, n_vertices: int) -> csr_array:
 
 def _onto(body: Body, vertices: Floats) -> tuple[Floats, Floats]:
     """Return the vertices after a Newton step onto the surface, and its normals."""
-    distance, normals = body.distance(vertices, 3.0 * body.widest_blend)
-    return vertices - np.where(distance < FAR / 2, distance, 0.0)[:, None] * normals, normals
+    distance, gradient = body.distance(vertices, SLACK)
+    # In the crease of a fillet the gradients of the two sides cancel in part; the step must not grow without bound.
+    steepness = np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), 0.5)
+    normals = gradient / steepness
+    return vertices - (np.where(distance < FAR / 2, distance, 0.0)[:, None] / steepness) * normals, normals
 
 
 def _with_shorter_diagonal(vertices: Floats, quads: Ints) -> Ints:
