@@ -47,6 +47,11 @@ class CriticalPoints:
         """Minima - saddles + maxima with multiplicity, which is the Euler characteristic of the net."""
         return int(((-1) ** self.kind * self.multiplicity).sum())
 
+    def unfolded(self) -> "CriticalPoints":
+        """Return simple points only: a k-fold saddle as k saddles at the same vertex."""
+        rows = np.repeat(np.arange(len(self.vertex)), self.multiplicity)
+        return CriticalPoints(self.vertex[rows], self.kind[rows], np.ones_like(rows), self.value[rows])
+
 
 @dataclass(frozen=True, eq=False)
 class Sectors:

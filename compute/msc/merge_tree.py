@@ -20,8 +20,10 @@ class MergeTree:
     ----------
     rank : (n,) int64
         The order of the sweep.
+    descent : (n,) int64
+        A lower neighbour of each vertex; itself at minima.
     basin : (n,) int64
-        The minimum that a descending path from each vertex ends in.
+        The minimum that the descending path from each vertex ends in.
     extremum, saddle, elder : (p,) int64
         The pairs in the order of the sweep: at ``saddle`` the component of ``extremum`` ends and that of ``elder``
         goes on.
@@ -32,6 +34,7 @@ class MergeTree:
     """
 
     rank: Ints
+    descent: Ints
     basin: Ints
     extremum: Ints
     saddle: Ints
@@ -42,23 +45,31 @@ class MergeTree:
 
 def merge_tree(rank: Ints, links: Links) -> MergeTree:
     """Sweep the net upwards and pair each minimum with the saddle that ends it (0-dimensional persistence)."""
-    basin = _basins(rank, links)
+    descent = _descent(rank, links)
+    basin = ends_of_paths(descent)
     sectors = merging_sectors(rank, links)
     extremum, saddle, elder = _elder_rule(rank, sectors, basin)
     minima = links.vertex[basin[links.vertex] == links.vertex]
-    return MergeTree(rank, basin, extremum, saddle, elder, np.setdiff1d(minima, extremum), sectors)
+    return MergeTree(rank, descent, basin, extremum, saddle, elder, np.setdiff1d(minima, extremum), sectors)
 
 
-def _basins(rank: Ints, links: Links) -> Ints:
-    """Follow lower neighbours of all vertices at once down to the minima."""
+def _descent(rank: Ints, links: Links) -> Ints:
+    """Return a lower neighbour of each vertex that has one.
+
+    Any will do: a path down from a vertex stays in the component of the sublevel set that it starts in.
+    """
     low, middle, high = ranked_corners(rank, links)
-    # By rank. Any lower neighbour will do: a path down from a vertex stays in the component that it starts in.
     target = np.arange(links.n_vertices)
     target[high] = middle
     target[middle] = low
+    return vertices_by_rank(rank)[target][rank]
+
+
+def ends_of_paths(target: Ints) -> Ints:
+    """Follow all paths at once to where they end."""
     while not np.array_equal(target, further := target[target]):
         target = further
-    return vertices_by_rank(rank)[target[rank]]
+    return target
 
 
 def _elder_rule(rank: Ints, sectors: Sectors, basin: Ints) -> tuple[Ints, Ints, Ints]:
