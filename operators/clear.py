@@ -20,7 +20,7 @@ class EIGENPARTS_OT_clear(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.object.data
-        exchange.remove_own_attributes(mesh)
+        exchange.remove_own_attributes(mesh, exchange.own_names(mesh))
         results.forget_colours(mesh)
         state.forget(mesh)
         if not any(state.is_analyzed(other) for other in bpy.data.meshes):

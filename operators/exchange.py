@@ -141,12 +141,13 @@ def read_own_integers(mesh: bpy.types.Mesh, own: OwnAttribute) -> np.ndarray:
     return values
 
 
-def remove_own_attributes(mesh: bpy.types.Mesh) -> None:
-    """Remove every attribute that is ours, and the marks."""
-    for name in own_names(mesh):
+def remove_own_attributes(mesh: bpy.types.Mesh, names: list[str]) -> None:
+    """Remove those of the named attributes that are ours."""
+    owned = own_names(mesh)
+    for name in set(names) & set(owned):
         if (attribute := mesh.attributes.get(name)) is not None:
             mesh.attributes.remove(attribute)
-    _set_own_names(mesh, [])
+    _set_own_names(mesh, [name for name in owned if name not in names])
 
 
 def own_names(mesh: bpy.types.Mesh) -> list[str]:

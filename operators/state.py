@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from . import engine
-from .exchange import OwnAttribute, fingerprint, read_own_integers, write_attribute
+from .exchange import OwnAttribute, fingerprint, read_own_integers, remove_own_attributes, write_attribute
 from .refusals import Refusal
 
 STATE = "eigenparts_state"
@@ -75,6 +75,7 @@ def is_analyzed(mesh: bpy.types.Mesh) -> bool:
 def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, description: str) -> None:
     """Put an analysis on the mesh it was made from, in place of an earlier one."""
     hierarchy = analysis.hierarchy
+    remove_own_attributes(mesh, [own.name for own in BRANCHES[len(analysis.branches) :]])
     for own, branches in zip(BRANCHES, analysis.branches, strict=False):
         write_attribute(mesh, own, branches.of_face)
     mesh[STATE] = {

@@ -1,9 +1,10 @@
-"""Load the checkout the way Blender loads an extension."""
+"""Load the checkout the way Blender loads an extension, and put meshes into the scene."""
 
 import importlib.util
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module")
@@ -28,3 +29,55 @@ def fresh_scene(extension):
     extension.register()
     yield
     extension.unregister()
+
+
+@pytest.fixture(scope="session")
+def star():
+    """Five arms on a ball."""
+    from tests.shapes import star
+
+    return star(n_arms=5, n_subdivisions=3)
+
+
+@pytest.fixture
+def star_object(star):
+    return add_object(star.vertices, star.triangles)
+
+
+@pytest.fixture
+def analyzed(star_object):
+    """The star, analyzed and divided at its default level."""
+    assert bpy.ops.eigenparts.analyze() == {"FINISHED"}
+    return star_object
+
+
+def add_object(vertices, polygons, name="star"):
+    """Add a mesh object to the scene and make it active."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(np.asarray(vertices).tolist(), [], [list(map(int, polygon)) for polygon in polygons])
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    return obj
+
+
+def values_of(mesh, name, components=1, dtype=np.int32, property_name="value"):
+    """Return the values of an attribute."""
+    data = mesh.attributes[name].data
+    values = np.empty(len(data) * components, dtype=dtype)
+    data.foreach_get(property_name, values)
+    return values if components == 1 else values.reshape(-1, components)
+
+
+def everything_on(mesh):
+    """Return all that a user could miss on a mesh: attributes with their bytes, properties, active colour."""
+    sizes = {"INT": ("value", 1, np.int32), "FLOAT": ("value", 1, np.float32), "FLOAT_COLOR": ("color", 4, np.float32)}
+    attributes = {
+        attribute.name: values_of(mesh, attribute.name, components, dtype, name).tobytes()
+        for attribute in mesh.attributes
+        for name, components, dtype in [sizes.get(attribute.data_type, (None, None, None))]
+        if name
+    }
+    names = sorted(attribute.name for attribute in mesh.attributes)
+    return attributes, names, sorted(mesh.keys()), mesh.color_attributes.active_color_name

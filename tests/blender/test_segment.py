@@ -1,0 +1,73 @@
+"""Segment and the level in the panel: any level at once, from what the analysis left."""
+
+import bpy
+import numpy as np
+import pytest
+
+from compute import TriangleMesh, analyze
+from tests.blender.conftest import everything_on, values_of
+
+
+@pytest.fixture(scope="module")
+def engine(star):
+    return analyze(TriangleMesh(np.float32(star.vertices), star.triangles))
+
+
+@pytest.mark.parametrize("choice", [{"level": 0}, {"level": 2}, {"threshold": 0.3}, {"n_parts": 4}, {}])
+def test_parts_are_those_of_the_engine(analyzed, engine, choice):
+    bpy.ops.eigenparts.segment(**choice)
+    np.testing.assert_array_equal(values_of(analyzed.data, "part"), engine.segment(**choice).labels)
+
+
+def test_every_level_can_be_reached_from_the_panel(analyzed, engine):
+    for level in range(engine.hierarchy.n_levels):
+        analyzed.data.eigenparts.level = level
+        assert analyzed.data.eigenparts.level == level
+        np.testing.assert_array_equal(values_of(analyzed.data, "part"), engine.segment(level=level).labels)
+
+
+def test_the_number_of_parts_and_the_level_tell_the_same(analyzed, engine):
+    analyzed.data.eigenparts.n_parts = 3
+    assert analyzed.data.eigenparts.n_parts == 3 == len(set(values_of(analyzed.data, "part")))
+    assert analyzed.data.eigenparts.level == engine.segment(n_parts=3).level
+
+
+def test_the_panel_stops_at_the_highest_level(analyzed, engine):
+    analyzed.data.eigenparts.level = 1000
+    assert analyzed.data.eigenparts.level == engine.hierarchy.n_levels - 1
+
+
+@pytest.mark.parametrize(
+    ("choice", "sentence"),
+    [
+        ({"level": 1000}, "Level 1000 does not exist"),
+        ({"level": -1}, "Level -1 does not exist"),
+        ({"threshold": -0.5}, "threshold is a fraction"),
+        ({"n_parts": 0}, "at least 1"),
+        ({"level": 1, "n_parts": 2}, "not several"),
+    ],
+)
+def test_what_does_not_exist_is_refused_and_nothing_changes(analyzed, choice, sentence):
+    before = everything_on(analyzed.data)
+    with pytest.raises(RuntimeError, match=sentence):
+        bpy.ops.eigenparts.segment(**choice)
+    assert everything_on(analyzed.data) == before
+
+
+def test_a_part_can_be_selected_for_editing(analyzed):
+    labels = values_of(analyzed.data, "part")
+    bpy.ops.eigenparts.select_part(part=3)
+    assert analyzed.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    selected = [polygon.select for polygon in analyzed.data.polygons]
+    np.testing.assert_array_equal(selected, labels == 3)
+
+
+def test_parts_can_be_added_to_the_selection(analyzed):
+    labels = values_of(analyzed.data, "part")
+    bpy.ops.eigenparts.select_part(part=3)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.eigenparts.select_part(part=1, extend=True)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    selected = [polygon.select for polygon in analyzed.data.polygons]
+    np.testing.assert_array_equal(selected, np.isin(labels, [1, 3]))
