@@ -154,7 +154,11 @@ def _spread(edges: Edges, generators: Ints, cotree: _Cotree) -> tuple[Ints, Ints
         crossed.append(edge)
         by.append(generator)
         at = cotree.parent[at]
-    return np.concatenate(crossed), np.concatenate(by), np.concatenate([*ends, np.empty((2, 0), dtype=np.int64)], axis=1)
+    return (
+        np.concatenate(crossed),
+        np.concatenate(by),
+        np.concatenate([*ends, np.empty((2, 0), dtype=np.int64)], axis=1),
+    )
 
 
 def _balanced_combinations(edges: Edges, generators: Ints, end: Ints, cotree: _Cotree) -> tuple[list[list[int]], int]:

@@ -95,7 +95,9 @@ def three_sheets_on_an_edge(n: int = 5) -> TriangleMesh:
 
 def sphere_with_a_wall() -> TriangleMesh:
     """A sphere whose equator is filled with a disk: three triangles at every edge of the equator, two chambers."""
-    vertices = np.array([[0, 0, 1], [0, 0, -1], *[[np.cos(a), np.sin(a), 0] for a in np.arange(8) * np.pi / 4], [0, 0, 0]])
+    vertices = np.array(
+        [[0, 0, 1], [0, 0, -1], *[[np.cos(a), np.sin(a), 0] for a in np.arange(8) * np.pi / 4], [0, 0, 0]]
+    )
     rim = np.arange(2, 10)
     fans = [np.stack([np.full(8, tip), rim, np.roll(rim, -1)], axis=1) for tip in (0, 1, 10)]
     return TriangleMesh(vertices, np.concatenate(fans))
