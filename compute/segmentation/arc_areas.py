@@ -54,13 +54,13 @@ def arc_areas(values: Floats, arc: Ints, tree: ArcTree, net: Net, face: Ints) ->
     while len(crossing):
         is_last = here == last[crossing]
         level = np.where(is_last, np.inf, values[tree.saddle[here]])
-        reached = np.maximum(_share_below(heights[crossing], level), below)
+        reached = np.maximum(share_below(heights[crossing], level), below)
         rows.append((face[crossing], here, net.areas[crossing] * (reached - below)))
         crossing, here, below = crossing[~is_last], tree.parent[here[~is_last]], reached[~is_last]
     return ArcAreas(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
-def _share_below(heights: Floats, level: Floats) -> Floats:
+def share_below(heights: Floats, level: Floats) -> Floats:
     """Return the fraction of each triangle that lies below a level, for sorted corner heights (m, 3)."""
     low, middle, high = heights.T
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -40,6 +40,9 @@ class ArcTree:
         Difference of the field between the two ends of the arc, as a fraction of its range; 0 for the root.
     closing_length, longest : (A,) float64
         Length of the level set where the arc closes and at its longest inside; 0 where it was not worth measuring.
+    roundness : (A,) float64
+        The least length²/area of all level sets from the leaf to where the arc closes, area being what they cut off:
+        4 pi for a flat disk, 2 pi for a hemisphere, less the more it stands out; 0 where it was not worth measuring.
     """
 
     is_of_maxima: bool
@@ -53,6 +56,7 @@ class ArcTree:
     height: Floats
     closing_length: Floats
     longest: Floats
+    roundness: Floats
 
     @cached_property
     def closing_before(self) -> Ints:
@@ -232,7 +236,7 @@ class _Growth:
         part = [self._features.part_of_extremum[extremum] for extremum in self._extremum]
         columns = (np.array(column) for column in (self._parent, part, self._extremum, self._saddle, self._closing))
         n_features = len(self._features.part_of_extremum) - self._features.n_roots
-        return ArcTree(is_of_maxima, self._features.n_roots, n_features, *columns, *np.zeros((3, len(part))))
+        return ArcTree(is_of_maxima, self._features.n_roots, n_features, *columns, *np.zeros((4, len(part))))
 
     def places(self) -> ArcPlaces:
         """Return where the basins of all extrema start."""
