@@ -183,7 +183,7 @@ def _balanced_combinations(edges: Edges, generators: Ints, end: Ints, cotree: _C
 
 
 def reduce_vector(vector: int, taken: int, echelon: dict[int, tuple[int, int]]) -> tuple[int, int]:
-    """Eliminate a vector modulo 2, given as the bits of an integer, by an echelon of (vector, history) by leading bit."""
+    """Eliminate a vector modulo 2, the bits of an integer, by an echelon of (vector, history) by leading bit."""
     while vector and (pivot := echelon.get(vector.bit_length())):
         vector, taken = vector ^ pivot[0], taken ^ pivot[1]
     return vector, taken

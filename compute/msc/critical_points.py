@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..mesh import Floats, Ints
+from ..mesh import Bools, Floats, Ints
 from .links import Links
 
 
@@ -125,13 +125,20 @@ def merging_sectors(rank: Ints, links: Links) -> Sectors:
     return Sectors(vertex[merges][order], lowest[merges][order])
 
 
+def sector_nodes(vertices: Ints, rank: Ints, links: Links) -> tuple[Ints, Ints, Ints]:
+    """Return the lower neighbours of some vertices, as rows (vertex, neighbour, number of the sector)."""
+    nodes, _ = _lower_link(vertices, rank, links)
+    return nodes.vertex, nodes.neighbour, nodes.component
+
+
 @dataclass(frozen=True, eq=False)
 class _LinkNodes:
-    """Vertices of lower links; the lowest of each component is marked ``is_first``."""
+    """Vertices of lower links with the component of each; the lowest one of a component is marked ``is_first``."""
 
     vertex: Ints
     neighbour: Ints
-    is_first: Ints
+    component: Ints
+    is_first: Bools
 
 
 def _candidates(rank: Ints, links: Links) -> Ints:
@@ -160,5 +167,5 @@ def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, I
     is_first = np.zeros(len(keys), dtype=bool)
     is_first[np.unique(component, return_index=True)[1]] = True
     vertex_at_rank = vertices_by_rank(rank)
-    nodes = _LinkNodes(keys // n, vertex_at_rank[keys % n], is_first)
+    nodes = _LinkNodes(keys // n, vertex_at_rank[keys % n], component, is_first)
     return nodes, np.bincount(corner[is_edge], minlength=n)

@@ -105,5 +105,5 @@ def sphere_with_a_wall() -> TriangleMesh:
 
 def projective_plane() -> TriangleMesh:
     """The six-vertex triangulation; as a complex, its places in space have no meaning."""
-    triangles = "012 023 034 045 051 124 235 341 452 513".split()
+    triangles = ["012", "023", "034", "045", "051", "124", "235", "341", "452", "513"]
     return TriangleMesh(np.random.default_rng(0).normal(size=(6, 3)), [[int(c) for c in t] for t in triangles])
