@@ -58,7 +58,7 @@ def _read_obj(path: Path) -> None:
 
 def _write_obj(path: Path) -> None:
     give_parts_materials()
-    bpy.ops.wm.obj_export(filepath=str(path), export_materials=True, export_normals=False, check_existing=False)
+    bpy.ops.wm.obj_export(filepath=str(path), export_materials=True, check_existing=False)
 
 
 def _read_ply(path: Path) -> None:

@@ -1,26 +1,31 @@
 """Keep Blender's own talk off the streams, so that they carry what we say and nothing else."""
 
+import ctypes
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 
 
 @contextmanager
 def blender_is_quiet() -> Iterator[None]:
-    """Send what is written below Python's level to nowhere meanwhile."""
-    sys.stdout.flush()
-    sys.stderr.flush()
+    """Send what Blender writes meanwhile to nowhere, be it through Python or below it."""
+    flush_streams()
     kept = [(stream, os.dup(stream)) for stream in (1, 2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
-        for stream, _ in kept:
-            os.dup2(nowhere, stream)
-        yield
+        with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
+            for stream, _ in kept:
+                os.dup2(nowhere.fileno(), stream)
+            yield
     finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        flush_streams()
         for stream, duplicate in kept:
             os.dup2(duplicate, stream)
             os.close(duplicate)
-        os.close(nowhere)
+
+
+def flush_streams() -> None:
+    """Write out what Python and Blender's own code still hold back."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None).fflush(None)

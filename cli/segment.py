@@ -51,10 +51,13 @@ def _report_file(path: Path, options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _divide_file(path: Path, options: argparse.Namespace) -> dict[str, Any]:
-    objects = _chosen(formats.load(path), options.object)
-    rows = [_divide_object(obj, options) for obj in objects]
-    output = formats.save(path, options.output or path.parent)
-    return {"output": str(output), "objects": rows}
+    rows = [_report_object(obj, options) for obj in _chosen(formats.load(path), options.object)]
+    report: dict[str, Any] = {"objects": rows}
+    if problems := [f"{row['name']}: {row['error']}" for row in rows if "error" in row]:
+        report["error"] = " ".join(problems)
+    if len(problems) < len(rows):
+        report["output"] = str(formats.save(path, options.output or path.parent))
+    return report
 
 
 def _chosen(objects: list[bpy.types.Object], name: str | None) -> list[bpy.types.Object]:
@@ -62,6 +65,14 @@ def _chosen(objects: list[bpy.types.Object], name: str | None) -> list[bpy.types
     if not chosen:
         raise Refusal(f"there is no mesh object {name!r}; there are {', '.join(obj.name for obj in objects)}.")
     return chosen
+
+
+def _report_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[str, Any]:
+    """Divide one object; what is wrong with it does not stop the others of its file."""
+    try:
+        return _divide_object(obj, options)
+    except (Refusal, EngineError) as refusal:
+        return {"name": obj.name, "error": str(refusal)}
 
 
 def _divide_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[str, Any]:
@@ -75,7 +86,7 @@ def _divide_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[s
         "name": obj.name,
         "level": labels.level,
         "n_levels": outcome.stored.hierarchy.n_levels,
-        "parts": _part_rows(labels),
+        "parts": part_rows(labels),
         "seconds": round(outcome.seconds, 3),
         "warnings": [*outcome.warnings, *labels.warnings],
     }
@@ -87,7 +98,8 @@ def _engine_options(mesh: bpy.types.Mesh, field: str) -> dict[str, Any]:
     return analysis_options(mesh, kind, number, field, order="AUTO", boundary="NEUMANN")
 
 
-def _part_rows(labels: BranchLabels) -> list[dict[str, Any]]:
+def part_rows(labels: BranchLabels) -> list[dict[str, Any]]:
+    """Return the table of parts as it stands in reports."""
     parts = labels.parts
     columns = (parts.id.tolist(), parts.parent.tolist(), parts.area.tolist(), parts.n_triangles.tolist())
     return [

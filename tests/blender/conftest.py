@@ -1,25 +1,17 @@
 """Load the checkout the way Blender loads an extension, and put meshes into the scene."""
 
-import importlib.util
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module")
+from tools.extension import load_extension
 
-ROOT = Path(__file__).parents[2]
+bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module")
 
 
 @pytest.fixture(scope="session")
 def extension():
     """The checkout under its extension name."""
-    spec = importlib.util.spec_from_file_location("eigenparts", ROOT / "__init__.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["eigenparts"] = module
-    spec.loader.exec_module(module)
-    return module
+    return load_extension()
 
 
 @pytest.fixture(autouse=True)

@@ -1,0 +1,147 @@
+"""The command ``segment``: formats, the report, and one bad file that does not stop the rest."""
+
+import shutil
+
+import bpy
+import numpy as np
+import pytest
+
+from compute import TriangleMesh, analyze
+from tests.shapes import icosphere, star
+
+EXPORTERS = {
+    ".obj": lambda path: bpy.ops.wm.obj_export(filepath=path),
+    ".ply": lambda path: bpy.ops.wm.ply_export(filepath=path),
+    ".stl": lambda path: bpy.ops.wm.stl_export(filepath=path),
+    ".glb": lambda path: bpy.ops.export_scene.gltf(filepath=path),
+    ".fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path),
+    ".blend": lambda path: bpy.ops.wm.save_as_mainfile(filepath=path, copy=True),
+}
+
+
+def add_object(mesh, name="star"):
+    data = bpy.data.meshes.new(name)
+    data.from_pydata(mesh.vertices.tolist(), [], mesh.triangles.tolist())
+    bpy.context.collection.objects.link(bpy.data.objects.new(name, data))
+
+
+@pytest.fixture(params=list(EXPORTERS))
+def star_file(request, tmp_path):
+    """The star in a format of Blender's."""
+    add_object(star(5, 3))
+    path = tmp_path / f"star{request.param}"
+    EXPORTERS[request.param](str(path))
+    return path
+
+
+def test_every_format_is_read_and_written_back(run, star_file):
+    code, report, errors = run("segment", star_file, "--json")
+    (row,) = report["files"][0]["objects"]
+    assert (code, errors) == (0, [])
+    assert [part["name"] for part in row["parts"]] == ["body", "part_1", "part_2", "part_3", "part_4", "part_5"]
+    suffix = ".blend" if star_file.suffix == ".stl" else star_file.suffix
+    written = star_file.with_name(f"star_parts{suffix}")
+    assert report["files"][0]["output"] == str(written)
+    assert written.stat().st_size > 0
+
+
+def test_materials_hold_the_parts_where_the_format_knows_no_attributes(run, tmp_path):
+    add_object(star(5, 3))
+    EXPORTERS[".obj"](str(tmp_path / "star.obj"))
+    _, report, _ = run("segment", tmp_path / "star.obj", "--json")
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    bpy.ops.wm.obj_import(filepath=str(tmp_path / "star_parts.obj"))
+    mesh = bpy.context.selected_objects[0].data
+    counts = np.bincount([polygon.material_index for polygon in mesh.polygons])
+    by_name = {material.name: count for material, count in zip(mesh.materials, counts.tolist(), strict=True)}
+    assert by_name == {part["name"]: part["faces"] for part in report["files"][0]["objects"][0]["parts"]}
+
+
+def test_a_blend_file_keeps_what_the_panel_needs(run, tmp_path):
+    add_object(star(5, 3))
+    EXPORTERS[".blend"](str(tmp_path / "star.blend"))
+    run("segment", tmp_path / "star.blend", "--level", 2)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "star_parts.blend"))
+    assert bpy.data.objects["star"].data["eigenparts_state"]["level"] == 2
+
+
+def test_colours_of_an_off_file_tell_the_parts_of_the_engine(run, star_off, tmp_path):
+    run("segment", star_off, "--output", tmp_path / "new folder")
+    lines = (tmp_path / "new folder" / "star_parts.off").read_text().splitlines()
+    n_vertices, n_faces = map(int, lines[1].split()[:2])
+    colours = [tuple(line.split()[4:]) for line in lines[2 + n_vertices :]]
+    _, of_colour = np.unique(colours, axis=0, return_inverse=True)
+    mesh = star(5, 3)
+    labels = analyze(TriangleMesh(np.float32(mesh.vertices), mesh.triangles)).segment().labels
+    assert len(colours) == n_faces
+    assert len(set(zip(of_colour.reshape(-1).tolist(), labels.tolist(), strict=True))) == 6
+
+
+def test_the_report_adds_up(run, star_off, tmp_path):
+    code, report, _ = run("segment", star_off, "--parts", 4, "--output", tmp_path, "--json")
+    row = report["files"][0]["objects"][0]
+    mesh = star(5, 3)
+    assert (code, report["version"]) == (0, 1)
+    assert len(row["parts"]) == 4
+    assert sum(part["faces"] for part in row["parts"]) == len(mesh.triangles)
+    assert sum(part["area"] for part in row["parts"]) == pytest.approx(mesh.areas.sum(), rel=1e-5)
+
+
+def test_one_bad_file_does_not_stop_the_rest(run, star_off, tmp_path):
+    broken = tmp_path / "broken.off"
+    broken.write_text("OFF\n3 1 0\n0 0 0\n")
+    good = shutil.copy(star_off, tmp_path / "good.off")
+    missing, odd = tmp_path / "missing.obj", tmp_path / "notes.txt"
+    code, lines, errors = run("segment", broken, missing, odd, good)
+    assert code == 1
+    assert len(lines) == 1
+    assert "good.off: good: 6 parts" in lines[0]
+    assert [line.split(": ", 1)[0] for line in errors] == [str(broken), str(missing), str(odd)]
+    assert [line.rstrip()[-1] for line in errors] == ["."] * 3
+
+
+def test_one_bad_object_does_not_stop_the_others_of_its_file(run, tmp_path):
+    add_object(star(5, 3))
+    bpy.context.collection.objects.link(bpy.data.objects.new("empty", bpy.data.meshes.new("empty")))
+    path = tmp_path / "two.blend"
+    EXPORTERS[".blend"](str(path))
+    code, report, errors = run("segment", path, "--json")
+    assert code == 1
+    assert len(errors) == 1
+    assert "empty: The mesh has no faces" in errors[0]
+    assert [len(row.get("parts", [])) for row in report["files"][0]["objects"]] == [0, 6]
+    assert (tmp_path / "two_parts.blend").exists()
+
+
+def test_an_object_can_be_chosen(run, tmp_path):
+    add_object(star(5, 3), "star")
+    add_object(icosphere(2), "ball")
+    path = tmp_path / "two.blend"
+    EXPORTERS[".blend"](str(path))
+    _, report, _ = run("segment", path, "--object", "ball", "--json")
+    assert [row["name"] for row in report["files"][0]["objects"]] == ["ball"]
+    code, _, errors = run("segment", path, "--object", "cube")
+    assert (code, len(errors)) == (1, 1)
+    assert "no mesh object 'cube'; there are ball, star" in errors[0]
+
+
+@pytest.mark.parametrize("field", ["1", "diffusion", "height"])
+def test_every_kind_of_field_can_be_named(run, tmp_path, field):
+    add_object(star(5, 3))
+    attribute = bpy.data.meshes["star"].attributes.new("height", "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.float32(np.linalg.norm(star(5, 3).vertices, axis=1)))
+    EXPORTERS[".blend"](str(tmp_path / "star.blend"))
+    assert run("segment", tmp_path / "star.blend", "--field", field)[0] == 0
+
+
+def test_a_level_that_does_not_exist_is_an_error_of_that_file(run, star_off, tmp_path):
+    code, lines, errors = run("segment", star_off, "--level", 99, "--output", tmp_path)
+    assert (code, lines, len(errors)) == (1, [], 1)
+    assert "Level 99 does not exist" in errors[0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_wrong_arguments_are_explained_with_exit_code_2(run, star_off):
+    assert run("segment", star_off, "--level", 1, "--parts", 2)[0] == 2
+    assert run("dissolve", star_off)[0] == 2
+    assert run("--help")[0] == 0
