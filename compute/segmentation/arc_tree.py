@@ -70,21 +70,13 @@ class ArcTree:
         return before
 
     @cached_property
-    def nested_part(self) -> Ints:
-        """(A,) the number of the part each arc is cut off as when the levels are overlaid.
-
-        On the way of a leaf the cut that appears at the lowest level has the leaf's number; every further one has a
-        number of its own, beyond those of the leaves, so that an arm stays the same part when its fingers appear.
-        """
-        lowest: dict[int, int] = {}
-        for part, closing in zip(self.part.tolist(), self.closing.tolist(), strict=True):
-            lowest[part] = min(closing, lowest.get(part, _NEVER))
-        is_lowest = self.closing == np.array([lowest[part] for part in self.part.tolist()])
-        # The numbers of leaves are followed by those of inner parts between maxima, then between minima.
-        first = 1 + self.n_roots + self.n_features * (1 if self.is_of_maxima else 2)
-        return np.where(
-            is_lowest | (self.closing == _NEVER), self.part, first + np.minimum(self.closing, self.n_features)
-        )
+    def least_closing_inside(self) -> Ints:
+        """(A,) the smallest ``closing`` of all arcs strictly inside the subtree of each arc."""
+        least = np.full(len(self.part), _NEVER)
+        for arc, parent in enumerate(self.parent.tolist()):
+            if parent >= 0:
+                least[parent] = min(least[parent], least[arc], self.closing[arc])
+        return least
 
     def is_cut(self, level: int) -> Bools:
         """Tell which arcs (A,) of surviving leaves a surviving saddle closes."""

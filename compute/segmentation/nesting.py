@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..mesh import Bools, Floats
+from ..mesh import Bools, Floats, Ints
 from .arc_tree import ArcTree
 from .necks import LEAST_HEIGHT
 
@@ -15,20 +15,32 @@ LEAST_AREA = 0.02
 BLUNT = 4.4
 
 
-def nested_cuts(tree: ArcTree, level: int, area: Floats) -> Bools:
-    """Tell which arcs (A,) are cut when all levels up to this one are overlaid.
+def nested_parts(tree: ArcTree, level: int, default_level: int, area: Floats) -> Ints:
+    """Return the part (A,) that is cut off at each arc when all levels up to this one are overlaid, 0 for none.
 
-    Every feature of the level is cut off unless it is blunt, and so is what lies between two of its saddles (the palm
-    between fingers and arm), unless it is a thin shell, or no neck shows where it ends.
+    Up to the default level every feature is cut off unless it is blunt, and so is what lies between two of its saddles
+    (the torso between arms and legs), unless it is a thin shell or no neck shows where it ends. Beyond the default
+    level these parts stay, and smaller ones are cut off inside them (fingers in an arm).
 
     Parameters
     ----------
     tree : ArcTree
     level : int
+    default_level : int
+        Of the hierarchy.
     area : (A,) float64
         Share of each arc in the whole area.
     """
-    is_cut = tree.is_cut(level)
+    is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)), area)
+    is_finer = tree.is_cut(level) & (tree.closing >= default_level)
+    was_feature = tree.least_closing_inside > tree.closing
+    is_cut |= is_finer & was_feature & (tree.roundness < BLUNT)
+    return _numbered(tree, is_cut)
+
+
+def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
+    """Tell which of the cut arcs (A,) end something that is worth a part."""
+    is_cut = candidates.copy()
     height, longest, inside = tree.height.copy(), tree.longest.copy(), area.copy()
     has_cut_inside = np.zeros(len(area), dtype=bool)
     last: dict[int, int] = {}
@@ -48,3 +60,20 @@ def nested_cuts(tree: ArcTree, level: int, area: Floats) -> Bools:
         if parent >= 0:
             has_cut_inside[parent] |= has_cut_inside[arc] or is_cut[arc]
     return is_cut
+
+
+def _numbered(tree: ArcTree, is_cut: Bools) -> Ints:
+    """Give the cut arcs their numbers.
+
+    The outermost on the way of a leaf has the leaf's number, so that an arm stays the same part when its fingers
+    appear; the others have numbers of their own, beyond those of the leaves.
+    """
+    # Numbers of leaves are followed by those of inner parts between maxima, then between minima.
+    first = 1 + tree.n_roots + tree.n_features * (1 if tree.is_of_maxima else 2)
+    number = np.zeros(len(is_cut), dtype=np.int64)
+    seen: set[int] = set()
+    for arc in np.flatnonzero(is_cut)[::-1].tolist():
+        part = int(tree.part[arc])
+        number[arc] = first + tree.closing[arc] if part in seen else part
+        seen.add(part)
+    return number

@@ -12,7 +12,7 @@ from .arc_tree import ArcTree
 from .branches import Branches, repaired_labels
 from .faces import sum_by
 from .hierarchy import Hierarchy
-from .nesting import nested_cuts
+from .nesting import nested_parts
 
 BODY = 0
 MODES = ("features", "nested")
@@ -141,7 +141,11 @@ def label_branches(
 
 
 def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str) -> BranchLabels:
-    cuts = [_cut_arcs(tree, pieces, level, mode) for tree, pieces in zip(hierarchy.trees, branches, strict=True)]
+    default_level = hierarchy.default_level
+    cuts = [
+        _cut_arcs(tree, pieces, level, default_level, mode)
+        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
+    ]
     of_branch = tuple(
         repaired_labels(tree.spread(cut)[pieces.arc], pieces)
         for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True)
@@ -149,12 +153,12 @@ def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, 
     return BranchLabels(level, of_branch, _tabulate(hierarchy, branches, cuts, of_branch))
 
 
-def _cut_arcs(tree: ArcTree, pieces: Branches, level: int, mode: str) -> Ints:
+def _cut_arcs(tree: ArcTree, pieces: Branches, level: int, default_level: int, mode: str) -> Ints:
     """Return the part that is cut off at each arc, 0 where nothing is."""
     if mode == "features":
         return np.where(tree.is_feature(level), tree.part, BODY)
     area = sum_by(pieces.arc, pieces.area, len(tree.part)) / pieces.area.sum()
-    return np.where(nested_cuts(tree, level, area), tree.nested_part, BODY)
+    return nested_parts(tree, level, default_level, area)
 
 
 def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts: int, mode: str) -> BranchLabels:

@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+
+from compute import LevelError, analyze
+from examples import humanoid
+from tests.compute.test_analysis import n_pieces
+from tests.shapes import icosphere, star
+
+
+@pytest.fixture(scope="module")
+def person():
+    character = humanoid(4000)
+    return analyze(type(star())(character.vertices, character.triangles), order=2)
+
+
+def test_beyond_the_default_level_parts_are_only_divided(person):
+    """Every part of a finer level lies in one part of the coarser one."""
+    levels = range(person.hierarchy.default_level, person.hierarchy.n_levels)
+    labels = [person.segment(level=level, mode="nested").labels for level in levels]
+    for coarse, fine in zip(labels[:-1], labels[1:], strict=True):
+        for part in set(fine.tolist()):
+            assert len(set(coarse[fine == part].tolist())) == 1
+
+
+def test_an_arm_keeps_its_number_when_its_fingers_appear(person):
+    coarse = person.segment(mode="nested")
+    fine = person.segment(level=person.hierarchy.n_levels - 1, mode="nested")
+    assert set(coarse.parts.id.tolist()) <= set(fine.parts.id.tolist())
+    assert fine.n_parts > coarse.n_parts + 8
+
+
+def test_the_parent_of_a_finger_is_a_part_that_it_touches(person):
+    fine = person.segment(level=person.hierarchy.n_levels - 1, mode="nested")
+    pairs = fine.labels[person.mesh.edges.neighbours]
+    touching = {tuple(pair) for pair in pairs.tolist()} | {tuple(pair[::-1]) for pair in pairs.tolist()}
+    for part, parent in zip(fine.parts.id.tolist(), fine.parts.parent.tolist(), strict=True):
+        assert part == 0 or (part, parent) in touching
+
+
+def test_nested_parts_are_connected(person):
+    for level in range(person.hierarchy.n_levels):
+        labels = person.segment(level=level, mode="nested").labels
+        for part in set(labels.tolist()) - {0}:
+            assert n_pieces(person.mesh, labels == part) == 1
+
+
+def test_a_blunt_end_is_no_nested_part():
+    """A capsule's ends are hemispheres: features of the field, but nothing stands out."""
+    capsule = icosphere(4).vertices * [1, 1, 1] + np.sign(icosphere(4).vertices[:, 2:]) * [0, 0, 0.2]
+    analysis = analyze(type(star())(capsule, icosphere(4).triangles))
+    level = analysis.hierarchy.n_levels - 1
+    assert analysis.segment(level=level).n_parts >= 3
+    assert analysis.segment(level=level, mode="nested").n_parts == 1
+
+
+def test_refuses_an_unknown_mode():
+    with pytest.raises(LevelError, match='"features" or "nested"'):
+        analyze(star()).segment(mode="all")
