@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -17,7 +19,7 @@ def test_beyond_the_default_level_parts_are_only_divided(person):
     """Every part of a finer level lies in one part of the coarser one."""
     levels = range(person.hierarchy.default_level, person.hierarchy.n_levels)
     labels = [person.segment(level=level, mode="nested").labels for level in levels]
-    for coarse, fine in zip(labels[:-1], labels[1:], strict=True):
+    for coarse, fine in itertools.pairwise(labels):
         for part in set(fine.tolist()):
             assert len(set(coarse[fine == part].tolist())) == 1
 
