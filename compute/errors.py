@@ -17,6 +17,10 @@ class FieldError(EngineError):
     """The scalar field does not fit the mesh or the question."""
 
 
+class RegistrationError(EngineError):
+    """The shapes cannot be matched the way it was asked."""
+
+
 class LevelError(EngineError):
     """The asked level, threshold or number of parts does not exist."""
 

@@ -1,0 +1,1 @@
+"""From two shapes to one: which eigenfunctions, parts and points of theirs correspond."""

@@ -1,0 +1,160 @@
+"""Matching: order, sign, mixing and handedness of the eigenfunctions of two shapes, with nothing to click."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from ..analysis import Analysis
+from ..errors import RegistrationError
+from ..mesh import Floats, Ints
+from .hypotheses import Effort, agrees_with_signs, find_hypotheses, spectrum_of
+from .selection import Candidate, Judge, confidence_of, distinct_candidates, fit_of
+from .spectral_shape import SpectralShape, spectral_shape
+from .zoomout import MATCHING_SIZES
+
+# How wide the search is; the next effort is made only where the ones before leave doubt.
+EFFORTS = (
+    Effort(),
+    Effort(n_seeds=30, n_branches=2, n_kept=12, n_refined=10),
+    Effort(levels=(6, 8, 10, 12, 14, 16), n_seeds=16, n_branches=2, n_kept=10, n_refined=10),
+)
+# A matching at least this sure is not searched for any further.
+SURE = 0.9
+MAX_ALTERNATIVES = 3
+# Signs can be given for the functions that hypotheses are made of; the rest follows from them.
+FLIPPABLE = max(EFFORTS[0].levels)
+
+
+@dataclass(frozen=True, eq=False)
+class Matching:
+    """Which function of a source is which of a target.
+
+    Attributes
+    ----------
+    map : (kt, ks) float64
+        Near-orthogonal, target x source, the constant left out, for functions on surfaces of area 1: the source's
+        functions, carried to the target, are the target's functions @ map.
+    confidence : float
+        From 0 to 1; above one half means that the matching is very likely right.
+    alternatives : tuple of Matching
+        At most three others, best first, without alternatives of their own.
+    same_topology : bool
+        Whether both shapes have the same triangles, so that vertices correspond by their numbers.
+    mirrored : bool
+        Whether the source's mirror image was matched.
+    symmetric, alternating : float
+        Agreement of the moment tensors, 1 at best.
+    """
+
+    map: Floats
+    confidence: float
+    alternatives: tuple["Matching", ...] = ()
+    same_topology: bool = False
+    mirrored: bool = False
+    symmetric: float = 1.0
+    alternating: float = 1.0
+
+    @cached_property
+    def order(self) -> Ints:
+        """(ks,) the target's function (from 0) that each of the source's functions mostly is."""
+        return linear_sum_assignment(-np.abs(self.map.T))[1]
+
+    @cached_property
+    def signs(self) -> Ints:
+        """(ks,) +1 or -1, the sign with which it is that function."""
+        entries = self.map[self.order, np.arange(len(self.order))]
+        return np.where(entries < 0, -1, 1)
+
+    @cached_property
+    def purity(self) -> Floats:
+        """(ks,) how much of each function is that one function, from 0 to 1; the rest is mixed from its neighbours."""
+        return np.abs(self.map[self.order, np.arange(len(self.order))])
+
+
+def match(
+    source: Analysis, target: Analysis, *, flips: Mapping[int, int] | None = None, mirrored: bool = False
+) -> Matching:
+    """Match the eigenfunctions of two shapes.
+
+    Parameters
+    ----------
+    source, target : Analysis
+    flips : mapping of int to +1 or -1, optional
+        The sign that a function of the source (from 1) is to have; all others follow.
+    mirrored : bool
+        Match the mirror image of the source: a left hand with a right one.
+
+    Raises
+    ------
+    RegistrationError
+        If a sign is given for a function that has none, or is not +1 or -1.
+    """
+    signs = _checked_signs(flips or {})
+    here, there = spectral_shape(source.matching_basis), spectral_shape(target.matching_basis)
+    if not signs and not mirrored and share_topology(source, target):
+        return match_by_number(here, there)
+    return match_shapes(here, there, signs, mirrored=mirrored)
+
+
+def share_topology(source: Analysis, target: Analysis) -> bool:
+    """Whether the analyzed surfaces have the same triangles over the same vertices."""
+    one, other = source.surface, target.surface
+    same_vertices = np.array_equal(one.vertex_of_input, other.vertex_of_input)
+    return same_vertices and np.array_equal(one.mesh.triangles, other.mesh.triangles)
+
+
+def match_by_number(source: SpectralShape, target: SpectralShape) -> Matching:
+    """Return the matching of two shapes whose points correspond by their numbers."""
+    size = min(*MATCHING_SIZES[-1:], source.n_functions, target.n_functions)
+    carried = target.project(source.functions[:, :size])[1:size, 1:]
+    return Matching(carried, 1.0, same_topology=True)
+
+
+def match_shapes(
+    source: SpectralShape, target: SpectralShape, signs: Mapping[int, int] | None = None, *, mirrored: bool = False
+) -> Matching:
+    """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
+    candidates = _ranked_candidates(source.mirrored() if mirrored else source, target, signs or {})
+    best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
+    confidence = confidence_of(best, candidates)
+    # What the best one leaves over is for the alternatives, if they fit.
+    alternatives = tuple(_matching_of(other, (1 - confidence) * fit_of(other), mirrored) for other in others)
+    return replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
+
+
+def _ranked_candidates(source: SpectralShape, target: SpectralShape, signs: Mapping[int, int]) -> list[Candidate]:
+    """Return judged hypotheses, best first; the search is widened until the best of them is sure."""
+    n_available = min(source.n_functions, target.n_functions)
+    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+    spectra = spectrum_of(source), spectrum_of(target)
+    ranked: list[Candidate] = []
+    for effort in EFFORTS:
+        found = find_hypotheses(*spectra, effort, signs)
+        judged = judge.judge(found.take(np.arange(min(len(found), effort.n_refined))))
+        ranked = sorted(ranked + judged, key=lambda candidate: _rank(candidate, signs))
+        if confidence_of(ranked[0], ranked) >= SURE:
+            break
+    return ranked
+
+
+def _rank(candidate: Candidate, signs: Mapping[int, int]) -> tuple[bool, bool, float]:
+    """Return what candidates are sorted by: those that break a given sign last, then torn ones, then by cost."""
+    disobeys = not agrees_with_signs(candidate.functional_map[None, 1:, 1:], signs)[0]
+    return (disobeys, *candidate.rank)
+
+
+def _matching_of(candidate: Candidate, confidence: float, mirrored: bool) -> Matching:
+    functional_map = candidate.functional_map[1:, 1:]
+    return Matching(functional_map, confidence, (), False, mirrored, candidate.symmetric, candidate.alternating)
+
+
+def _checked_signs(flips: Mapping[int, int]) -> dict[int, int]:
+    for number, sign in flips.items():
+        if not 1 <= number <= FLIPPABLE:
+            raise RegistrationError(f"Only the signs of functions 1 to {FLIPPABLE} can be given, not that of {number}.")
+        if sign not in (-1, 1):
+            raise RegistrationError(f"The sign of a function is +1 or -1, not {sign}.")
+    return {number - 1: int(sign) for number, sign in flips.items()}

@@ -1,0 +1,45 @@
+"""Surfaces to match: lumpy balls with or without a plane of symmetry, and copies of them."""
+
+import numpy as np
+
+from compute.mesh import TriangleMesh
+from tests.shapes import icosphere
+
+# Direction, height and width of the lumps of a ball that looks like nothing else: no symmetry, no equal lumps.
+LUMPS = (((0, 0, 1), 1.2, 0.45), ((1, 0, 0.2), 0.8, 0.4), ((-0.4, 1, -0.3), 0.6, 0.35), ((-0.3, -0.8, 0.5), 0.9, 0.3))
+# A head and a tail on the plane x = 0, and a pair of limbs on either side of it.
+PAIRED_LUMPS = (
+    *(((0, 1, 0.3), 1.0, 0.4), ((0, -1, 0.5), 1.4, 0.25)),
+    *(((side * 0.9, 0.5, -0.6), 1.2, 0.25) for side in (-1, 1)),
+    *(((side * 0.7, -0.8, -0.6), 0.8, 0.3) for side in (-1, 1)),
+)
+
+
+def lumpy_ball(n_subdivisions: int = 3, lumps: tuple = LUMPS) -> TriangleMesh:
+    """Return a sphere with lumps of Gaussian profile."""
+    sphere = icosphere(n_subdivisions)
+    radius = np.ones(len(sphere.vertices))
+    for direction, height, width in lumps:
+        away = 1 - sphere.vertices @ (np.array(direction) / np.linalg.norm(direction))
+        radius += height * np.exp(-away / width**2)
+    return TriangleMesh(sphere.vertices * radius[:, None], sphere.triangles)
+
+
+def shuffled(mesh: TriangleMesh, seed: int = 0) -> tuple[TriangleMesh, np.ndarray]:
+    """Return the mesh in random order, and for each of its vertices the one it was."""
+    random = np.random.default_rng(seed)
+    order = random.permutation(len(mesh.vertices))
+    triangles = np.argsort(order)[mesh.triangles][random.permutation(len(mesh.triangles))]
+    return TriangleMesh(mesh.vertices[order], np.roll(triangles, 1, axis=1)), order
+
+
+def moved(mesh: TriangleMesh) -> TriangleMesh:
+    """Return the mesh turned, shifted and seven times as large."""
+    turn = np.linalg.qr(np.random.default_rng(1).standard_normal((3, 3)))[0]
+    turn *= np.sign(np.linalg.det(turn))
+    return TriangleMesh(7 * mesh.vertices @ turn.T + [3, -5, 2], mesh.triangles)
+
+
+def mirror_image(mesh: TriangleMesh) -> TriangleMesh:
+    """Return the mesh reflected in the plane x = 0, wound outward again."""
+    return TriangleMesh(mesh.vertices * [-1, 1, 1], mesh.triangles[:, ::-1])

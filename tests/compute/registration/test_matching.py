@@ -1,0 +1,169 @@
+"""Order, sign, mixing and handedness, against shapes whose matching is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from compute.analysis import Analysis, analyze
+from compute.errors import RegistrationError
+from compute.mesh import TriangleMesh
+from compute.registration.matching import match, match_shapes
+from compute.registration.spectral_shape import SpectralShape, spectral_shape
+from compute.registration.zoomout import nearest_points, with_constant
+from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, shuffled
+from tests.shapes import icosphere, torus
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return analyzed(lumpy_ball())
+
+
+@pytest.fixture(scope="module")
+def paired():
+    return analyzed(lumpy_ball(lumps=PAIRED_LUMPS))
+
+
+def analyzed(mesh: TriangleMesh) -> Analysis:
+    """Return an analysis that is quick to make: matching has functions of its own."""
+    return analyze(mesh, n_functions=2, order=1)
+
+
+def shape_of(analysis) -> SpectralShape:
+    return spectral_shape(analysis.matching_basis)
+
+
+def landed_vertices(matching, source, target) -> np.ndarray:
+    """Return the source's node that each vertex of the target lands on."""
+    here, there = shape_of(source), shape_of(target)
+    of_vertex = there.functions[np.argsort(there.node)][: len(target.mesh.vertices)]
+    return here.node[nearest_points(with_constant(matching.map), here.functions, of_vertex)]
+
+
+def share_at(matching, source, target, expected) -> float:
+    """Return the share of the target's vertices that land within 2 % of the size of an expected vertex."""
+    nodes = source.matching_basis.nodes
+    away = nodes[landed_vertices(matching, source, target)] - source.mesh.vertices[expected]
+    return (np.linalg.norm(away, axis=1) < 0.02 * np.sqrt(source.mesh.areas.sum())).mean()
+
+
+def test_a_moved_scaled_and_shuffled_copy_is_recovered_exactly(ball):
+    copy, order = shuffled(moved(ball.mesh))
+    target = analyzed(copy)
+    matching = match(ball, target)
+    assert matching.confidence > 0.9
+    np.testing.assert_allclose(np.abs(matching.map[:20, :20]), np.eye(20), atol=5e-3)
+    np.testing.assert_array_equal(landed_vertices(matching, ball, target), order)
+
+
+@pytest.mark.parametrize("change", ["flip", "switch", "mix"])
+def test_functions_that_are_flipped_switched_or_mixed_are_put_right(ball, change):
+    rotation = np.eye(20)
+    if change == "flip":
+        rotation[[1, 4, 5, 11], [1, 4, 5, 11]] = -1
+    elif change == "switch":
+        rotation[[2, 3, 7, 8]] = rotation[[3, 2, 8, 7]]
+    else:
+        rotation[3:5, 3:5] = [[0.8, -0.6], [0.6, 0.8]]
+    shape = shape_of(ball)
+    changed = shape.functions.copy()
+    changed[:, 1:21] = shape.functions[:, 1:21] @ rotation.T
+    values = shape.values.copy()
+    if change == "mix":
+        values[4:6] = values[4:6].mean()
+    matching = match_shapes(replace(shape, values=values), replace(shape, functions=changed, values=values))
+    np.testing.assert_allclose(matching.map[:20, :20], rotation, atol=1e-6)
+    assert matching.confidence > 0.9
+
+
+def test_inverted_winding_does_not_mirror(ball):
+    target = analyzed(TriangleMesh(ball.mesh.vertices, ball.mesh.triangles[:, ::-1]))
+    matching = match(ball, target)
+    assert share_at(matching, ball, target, np.arange(642)) == 1
+
+
+def test_left_lands_on_left_of_a_mirrored_copy(paired):
+    """The body is its own mirror image, so the copy is the body itself with its vertices swapped."""
+    copy, order = shuffled(mirror_image(paired.mesh))
+    target = analyzed(copy)
+    swapped = nearest_vertices(mirror_image(paired.mesh).vertices, paired.mesh.vertices)
+    assert share_at(match(paired, target), paired, target, swapped[order]) > 0.99
+
+
+def test_left_lands_on_right_of_a_mirrored_copy_where_asked(paired):
+    copy, order = shuffled(mirror_image(paired.mesh))
+    target = analyzed(copy)
+    matching = match(paired, target, mirrored=True)
+    assert matching.mirrored
+    assert share_at(matching, paired, target, order) > 0.99
+
+
+def test_shapes_of_one_topology_correspond_by_number(ball):
+    bent = TriangleMesh(ball.mesh.vertices * [1, 1, 1.2], ball.mesh.triangles)
+    matching = match(ball, analyzed(bent))
+    assert matching.same_topology
+    assert matching.confidence == 1
+    np.testing.assert_array_equal(matching.order[:6], np.arange(6))
+
+
+def test_switching_ellipsoids_are_put_in_order():
+    """Y20 stands before the pair Y1+-1 at rz = 2.78 and behind it at 2.74 (Reuter 2009, Figure 2)."""
+    sphere = icosphere(4)
+    early, late = (analyzed(shuffled(TriangleMesh(sphere.vertices * [1, 1, rz], sphere.triangles))[0])
+                   for rz in (2.74, 2.78))  # fmt: skip
+    matching = match(early, late)
+    along = [np.flatnonzero(_depends_on_z_alone(analysis))[1] for analysis in (early, late)]
+    assert along[0] != along[1]
+    assert matching.order[along[0]] == along[1]
+
+
+def test_equal_arms_go_round_in_order_and_leave_doubt():
+    arms = [(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(5) / 5]
+    star = lumpy_ball(3, tuple((arm, 1.5, 0.25) for arm in arms))
+    source, target = analyzed(star), analyzed(shuffled(star)[0])
+    matching = match(source, target)
+    landed = source.matching_basis.nodes[landed_vertices(matching, source, target)]
+    tips = nearest_vertices(3 * np.array(arms), target.mesh.vertices)
+    angle = np.arctan2(landed[tips, 1], landed[tips, 0])
+    steps = np.diff(np.append(angle, angle[0])) % (2 * np.pi)
+    np.testing.assert_allclose(steps, 2 * np.pi / 5, atol=0.2)
+    assert matching.confidence < 0.5
+    assert matching.alternatives
+
+
+def test_spheres_can_be_matched_in_any_way_so_none_is_sure():
+    coarse, fine = icosphere(2), moved(icosphere(3))
+    assert match(analyzed(coarse), analyzed(fine)).confidence < 0.5
+
+
+def test_shapes_that_have_nothing_in_common_are_not_matched_with_confidence(ball):
+    assert match(ball, analyzed(torus())).confidence < 0.1
+
+
+def test_a_given_sign_is_kept_and_the_others_follow(paired):
+    target = analyzed(shuffled(paired.mesh)[0])
+    matching = match(paired, target)
+    flipped = match(paired, target, flips={1: -int(matching.signs[0])})
+    assert flipped.signs[0] == -matching.signs[0]
+    assert flipped.confidence < matching.confidence
+
+
+@pytest.mark.parametrize(
+    ("flips", "sentence"), [({0: 1}, "functions 1 to"), ({99: 1}, "not that of 99"), ({1: 2}, "-1")]
+)
+def test_impossible_signs_are_refused_with_a_sentence(ball, flips, sentence):
+    with pytest.raises(RegistrationError, match=sentence):
+        match(ball, ball, flips=flips)
+
+
+def nearest_vertices(points, vertices) -> np.ndarray:
+    return np.linalg.norm(points[:, None] - vertices, axis=2).argmin(axis=1)
+
+
+def _depends_on_z_alone(analysis) -> np.ndarray:
+    """(5,) whether each function has no part that turns once around the axis."""
+    basis = analysis.matching_basis
+    around = np.hypot(basis.nodes[:, 0], basis.nodes[:, 1])
+    turning = np.stack([basis.nodes[:, 0], basis.nodes[:, 1]], axis=1) / np.maximum(around, 1e-9)[:, None]
+    return np.abs(basis.functions[:, :5].T @ (basis.mass @ turning)).max(axis=1) < 0.1
