@@ -9,7 +9,7 @@ from .necks import LEAST_HEIGHT
 # An inner part is worth keeping if its border is a neck: shorter than this fraction of its longest level set.
 NECK = 0.7
 # And if it has at least this fraction of the area of the whole.
-LEAST_AREA = 0.02
+LEAST_AREA = 0.05
 # A feature is worth a part if it stands out: all its level sets have less than this length²/area. A hemisphere has
 # 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
 BLUNT = 4.4
