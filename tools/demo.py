@@ -42,6 +42,9 @@ def main(arguments: list[str]) -> int:
         rows = [_divide(obj, options.output) for obj in objects]
     except RuntimeError as error:
         sys.exit(str(error).removeprefix("Error: ").strip())
+    finally:
+        # As a Python module, Blender cannot end while classes are registered.
+        load_extension().unregister()
     pictures = [options.output / picture for row in rows for picture in row["pictures"]]
     _leave(options.output, rows, side_by_side(pictures, options.output / "overview.png"))
     return 0
