@@ -78,7 +78,7 @@ def _create(folder: Path, version: str) -> None:
 def _install(python: Path, blender: str) -> None:
     numpy = BLENDERS[blender][1]
     packages = [f"bpy=={blender}", f"numpy=={numpy}", "-r", str(REQUIREMENTS)]
-    command = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *packages]
+    command = [python, "-m", "pip", "install", "-qq", "--disable-pip-version-check", *packages]
     if subprocess.run(command).returncode:
         raise SetUpError(f"pip could not install Blender {blender} and its companions; see its message above.")
 

@@ -38,7 +38,7 @@ def _fetch(wheel: Path) -> None:
     package, version, python, _, platform = wheel.stem.split("-")
     options = ["--no-deps", "--only-binary=:all:", "--python-version", re.sub(r"cp3", "3.", python)]
     source = ["--platform", platform.split(".")[0], f"{package}=={version}", "--dest", WHEELS]
-    _run(sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", *options, *source)
+    _run(sys.executable, "-m", "pip", "download", "-qq", "--disable-pip-version-check", *options, *source)
     if not wheel.exists():
         sys.exit(f"The wheel {wheel.name} that blender_manifest.toml names is not what the package registry gives.")
 
