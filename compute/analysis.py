@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import FieldError
+from .errors import FieldError, LevelError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
-from .fields import DIFFUSION_FUNCTIONS, Net, ScalarField, diffusion_field, eigenfunction_field, user_field
+from .fields import DIFFUSION, DIFFUSION_FUNCTIONS, Net, ScalarField, diffusion_field, eigenfunction_field, user_field
 from .mesh import Ints, TriangleMesh
 from .msc.critical_points import CriticalPoints, critical_points, rank_vertices
 from .msc.links import Links, links_of
@@ -20,10 +20,16 @@ from .segmentation.faces import face_graph
 from .segmentation.hierarchy import Hierarchy, build_hierarchy
 from .segmentation.necks import measured
 from .segmentation.parts import Segmentation, label_branches
+from .segmentation.subparts import inserted
 from .surface import Surface, clean_surface
 
 # Functions computed for the first eigenfunctions when nobody asks for a number.
 DEFAULT_FUNCTIONS = 12
+# A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
+# arm have 0.01 and more, the ripples of its skin less than 0.001.
+WITHIN_THRESHOLD = 0.004
+# And has at least this many faces.
+LEAST_FACES_WITHIN = 8
 # Functions for matching and dense maps, and the least number of unknowns that carry them accurately: elements of a
 # higher order are used where linear ones have fewer.
 MATCHING_FUNCTIONS = 100
@@ -44,6 +50,8 @@ class Analysis:
     hierarchy : Hierarchy
     warnings : tuple of str
         Sentences for the user.
+    field_choice : "diffusion", int or (V,) array
+        The field that was asked for.
     """
 
     mesh: TriangleMesh
@@ -51,6 +59,7 @@ class Analysis:
     field: ScalarField
     hierarchy: Hierarchy
     warnings: tuple[str, ...]
+    field_choice: str | int | ArrayLike
     _links: Links
     _arc_of_vertex: tuple[Ints, ...]
     _known_basis: Eigenbasis | None = dataclasses.field(repr=False)
@@ -110,6 +119,7 @@ class Analysis:
         threshold: float | None = None,
         n_parts: int | None = None,
         mode: str = "features",
+        within: int | None = None,
     ) -> Segmentation:
         """Divide the mesh into parts.
 
@@ -123,6 +133,8 @@ class Analysis:
             How many labels, the body included.
         mode : "features" or "nested"
             Only the features, or also what lies between them when all levels up to this one are overlaid.
+        within : int, optional
+            A part of this segmentation that is analyzed on its own and divided further.
 
         Returns
         -------
@@ -132,12 +144,17 @@ class Analysis:
         Raises
         ------
         LevelError
-            If there is no such level or mode, or more than one of the three choices is given.
+            If there is no such level, mode or part, or more than one of the three choices is given.
+
+        References
+        ----------
+        .. [1] Reuter, IJCV 2010, section 4.7, on the analysis of subparts.
         """
         branches = self.branches()
         labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
         of_faces = labels.of_faces(tuple(pieces.of_face for pieces in branches))
-        return Segmentation(of_faces, labels.parts, labels.level, labels.warnings)
+        whole = Segmentation(of_faces, labels.parts, labels.level, labels.warnings)
+        return whole if within is None else _divided_further(self, whole, within, mode)
 
 
 def analyze(
@@ -186,7 +203,7 @@ def analyze(
     hierarchy = dataclasses.replace(bare, trees=trees)
     progress(1.0, "Done")
     warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
-    return Analysis(mesh, surface, chosen.field, hierarchy, warnings, links, arcs, chosen.basis)
+    return Analysis(mesh, surface, chosen.field, hierarchy, warnings, field, links, arcs, chosen.basis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +222,7 @@ def _field(
     progress: Progress,
 ) -> _ChosenField:
     if isinstance(choice, str):
-        if choice != "diffusion":
+        if choice != DIFFUSION:
             raise FieldError(f'The field "{choice}" does not exist; use "diffusion", a number or values of your own.')
         n_functions = n_functions or min(DIFFUSION_FUNCTIONS, _n_available(surface, boundary))
     elif isinstance(choice, int | np.integer):
@@ -247,6 +264,19 @@ def _resolved_order(surface: Surface, order: int | str) -> tuple[int, tuple[str,
         order = 3 if n_triangles <= 80_000 else 2 if n_triangles <= 200_000 else 1
         return order, (() if order == 3 else (f"The mesh is large: elements of order {order} instead of 3 were used.",))
     return order, ()
+
+
+def _divided_further(analysis: Analysis, whole: Segmentation, part: int, mode: str) -> Segmentation:
+    """Analyze one part on its own and put its parts in its place."""
+    inside = np.flatnonzero(whole.labels == part)
+    if len(inside) < LEAST_FACES_WITHIN:
+        raise LevelError(f"Part {part} has {len(inside)} faces at this level, too few to be divided further.")
+    piece = TriangleMesh(analysis.mesh.vertices, analysis.mesh.triangles[inside])
+    # No heat stays at the border: with a free one the part would have an end of its own where it was cut off.
+    holds_border = analysis.field.name == DIFFUSION and bool((piece.edges.n_triangles == 1).any())
+    own = analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
+    threshold = WITHIN_THRESHOLD / own.field.value_range if holds_border else None
+    return inserted(whole, part, inside, own.segment(threshold=threshold, mode=mode), own.net, analysis.net)
 
 
 def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:

@@ -12,6 +12,7 @@ from .fem.lagrange import reference_element
 from .mesh import Floats, Ints
 from .surface import Surface
 
+DIFFUSION = "diffusion"
 # Functions used by the diffusion field, at the most.
 DIFFUSION_FUNCTIONS = 30
 # Time of the diffusion in units of 1 / (first eigenvalue); 1 gave the best parts on the Princeton benchmark.
@@ -91,7 +92,7 @@ def diffusion_field(basis: Eigenbasis) -> ScalarField:
     mean = weights.sum() / basis.mass.sum()
     values = np.zeros(len(heat))
     values[used] = np.log(np.maximum(heat[used] / mean, LEAST_HEAT))
-    return ScalarField(values, refined_net(basis), "diffusion", minima_are_features=False, least_range=FLAT_DIFFUSION)
+    return ScalarField(values, refined_net(basis), DIFFUSION, minima_are_features=False, least_range=FLAT_DIFFUSION)
 
 
 def eigenfunction_field(basis: Eigenbasis, number: int) -> ScalarField:

@@ -58,3 +58,32 @@ def test_a_blunt_end_is_no_nested_part():
 def test_refuses_an_unknown_mode():
     with pytest.raises(LevelError, match='"features" or "nested"'):
         analyze(star()).segment(mode="all")
+
+
+def arm_of(person):
+    """Return the label of the part that reaches furthest to the left."""
+    segmentation = person.segment()
+    tips = person.net.positions[segmentation.parts.extremum[1:]]
+    return int(segmentation.parts.id[1:][np.argmax(tips[:, 0])])
+
+
+def test_an_arm_on_its_own_has_five_fingers(person):
+    arm = arm_of(person)
+    coarse, fine = person.segment(), person.segment(within=arm)
+    assert (fine.parts.parent == arm).sum() == 5
+    np.testing.assert_array_equal(fine.labels[coarse.labels != arm], coarse.labels[coarse.labels != arm])
+    tips = person.net.positions[fine.parts.extremum[fine.parts.parent == arm]]
+    assert (tips[:, 0] > 0.9 * person.mesh.vertices[:, 0].max() - 0.1).all()
+
+
+def test_the_table_of_a_part_that_was_divided_fits_the_labels(person):
+    fine = person.segment(within=arm_of(person))
+    area = np.bincount(fine.labels, person.mesh.areas)
+    np.testing.assert_allclose(fine.parts.area, area[fine.parts.id])
+    np.testing.assert_array_equal(fine.parts.n_triangles, np.bincount(fine.labels)[fine.parts.id])
+
+
+@pytest.mark.parametrize("part", [77, -1])
+def test_refuses_to_divide_a_part_that_is_not_there(person, part):
+    with pytest.raises(LevelError, match="0 faces"):
+        person.segment(within=part)
