@@ -1,9 +1,13 @@
 """The scripting API of the engine: arrays in, arrays out, no Blender."""
 
-from .analysis import Analysis, analyze
+from .analysis import Analysis, analyze, reeb_graph, zero_level
 from .errors import Cancelled, EngineError, FieldError, LevelError, MeshError, RegistrationError, SpectrumError
 from .fem.eigenbasis import Eigenbasis, solve_eigenbasis
 from .mesh import TriangleMesh
+from .msc.diagram import PersistenceDiagram, persistence_curve, size_function
+from .msc.diagram_distance import diagram_distance
+from .msc.morse_smale import MorseSmaleComplex
+from .msc.reeb import ReebGraph
 from .registration.matching import Matching, match
 from .segmentation.parts import Segmentation
 
@@ -16,11 +20,19 @@ __all__ = [
     "LevelError",
     "Matching",
     "MeshError",
+    "MorseSmaleComplex",
+    "PersistenceDiagram",
+    "ReebGraph",
     "RegistrationError",
     "Segmentation",
     "SpectrumError",
     "TriangleMesh",
     "analyze",
+    "diagram_distance",
     "match",
+    "persistence_curve",
+    "reeb_graph",
+    "size_function",
     "solve_eigenbasis",
+    "zero_level",
 ]

@@ -11,8 +11,10 @@ from .errors import FieldError, LevelError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
 from .fields import DIFFUSION, DIFFUSION_FUNCTIONS, Net, ScalarField, diffusion_field, eigenfunction_field, user_field
 from .mesh import Ints, TriangleMesh
-from .msc.critical_points import CriticalPoints, critical_points, rank_vertices
+from .msc.diagram import PersistenceDiagram
 from .msc.links import Links, links_of
+from .msc.morse_smale import FieldTopology, MorseSmaleComplex
+from .msc.reeb import ReebGraph
 from .progress import Progress, section, silent
 from .segmentation.arc_areas import arc_areas
 from .segmentation.branches import Branches, build_branches
@@ -21,6 +23,7 @@ from .segmentation.hierarchy import Hierarchy, build_hierarchy
 from .segmentation.necks import measured
 from .segmentation.parts import Segmentation, label_branches
 from .segmentation.subparts import inserted
+from .segmentation.zero_level import divide_at_zero
 from .surface import Surface, clean_surface
 
 # Functions computed for the first eigenfunctions when nobody asks for a number.
@@ -82,10 +85,25 @@ class Analysis:
         return _solve_for_matching(self.surface)
 
     @cached_property
-    def complex(self) -> CriticalPoints:
-        """The critical points of the field."""
-        values = self.field.values
-        return critical_points(values, rank_vertices(values), self._links)
+    def complex(self) -> MorseSmaleComplex:
+        """The critical points of the field with all that lies between them, each part made when first asked for."""
+        return MorseSmaleComplex(FieldTopology(self._links, self.net.positions, self.field.values))
+
+    @property
+    def diagram(self) -> PersistenceDiagram:
+        """The separated persistence diagram of the field."""
+        return self.complex.diagram
+
+    def complex_at_level(self, level: int | None = None) -> MorseSmaleComplex:
+        """Return the complex with what survives at a level, the default one if None.
+
+        Where only maxima are features, minima and handles are kept as far as they are as persistent as those.
+        """
+        hierarchy = self.hierarchy
+        level = hierarchy.default_level if level is None else hierarchy.checked_level(level)
+        persistence = hierarchy.persistence[::-1]
+        least = np.inf if level == 0 else persistence[level - 1]
+        return self.complex.above(float(least))
 
     def branches(self, face_of_triangle: Ints | None = None) -> tuple[Branches, ...]:
         """Return the faces of every arc, one table for each tree of the hierarchy.
@@ -204,6 +222,44 @@ def analyze(
     progress(1.0, "Done")
     warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
     return Analysis(mesh, surface, chosen.field, hierarchy, warnings, field, links, arcs, chosen.basis)
+
+
+def reeb_graph(analysis: Analysis, *, level: int | None = None) -> ReebGraph:
+    """Return the Reeb graph of the field with the net triangles of each arc.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    level : int, optional
+        Which extrema and saddles to keep; the default level if None.
+
+    Raises
+    ------
+    LevelError
+        If the level does not exist, or has too many critical points.
+    """
+    return analysis.complex_at_level(level).reeb_graph
+
+
+def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
+    """Divide a mesh along the zero level of an eigenfunction: a torso, which no feature divides, into halves.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    function : int
+        Number of the eigenfunction, from 1.
+
+    Raises
+    ------
+    FieldError
+        If there is no such eigenfunction.
+
+    References
+    ----------
+    .. [1] Reuter, IJCV 2010, section 5.1.
+    """
+    return divide_at_zero(eigenfunction_field(analysis.eigenbasis, function), analysis.mesh, analysis.surface)
 
 
 @dataclass(frozen=True, eq=False)

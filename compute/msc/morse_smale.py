@@ -1,25 +1,27 @@
-"""The Morse-Smale complex: critical points, separatrices and cells at any level of simplification."""
+"""The Morse-Smale complex of a field and all that is read from it, at any level of simplification."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from ..mesh import Floats
+from ..mesh import Floats, Ints
 from .cancellation import extended_lines
 from .cells import Cells, cells_of
-from .critical_points import CriticalPoints, Kind, critical_points
+from .cohomology import cocycles_of
+from .critical_points import CriticalPoints, Kind, critical_points, rank_vertices
+from .diagram import PersistenceDiagram, persistence_diagram
 from .links import Links
-from .merge_tree import MergeTree
-from .pairing import Pairing
+from .merge_tree import MergeTree, merge_tree
+from .pairing import Pairing, pairing_of
+from .persistence import EssentialClasses, essential_classes
+from .reeb import ReebGraph, build_reeb_graph
 from .separatrices import Flow, Separatrices, flow_to_maxima, flow_to_minima, separatrices_of
 
 
 @dataclass(frozen=True, eq=False)
-class MorseSmaleComplex:
-    """The Morse-Smale complex of a field on a net, with some of its pairs cancelled.
-
-    Cancelling forgets nothing: :meth:`simplified` starts from the full complex whatever this one has left.
+class FieldTopology:
+    """A field on a net with its merge trees, pairs and flow, each made when first asked for.
 
     Attributes
     ----------
@@ -27,69 +29,138 @@ class MorseSmaleComplex:
         The net.
     positions : (n, 3) float64
     values : (n,) float64
-    minima, maxima : MergeTree
-    pairing : Pairing
-    n_cancelled : int
-        How many pairs are cancelled, those of least persistence.
     """
 
     links: Links
     positions: Floats
     values: Floats
-    minima: MergeTree
-    maxima: MergeTree
-    pairing: Pairing
+
+    @cached_property
+    def rank(self) -> Ints:
+        """(n,) strict order of the vertices."""
+        return rank_vertices(self.values)
+
+    @cached_property
+    def minima(self) -> MergeTree:
+        """The components of the sublevel sets."""
+        return merge_tree(self.rank, self.links)
+
+    @cached_property
+    def maxima(self) -> MergeTree:
+        """The components of the superlevel sets; the same order read downwards, so that ties are broken alike."""
+        return merge_tree(len(self.rank) - 1 - self.rank, self.links)
+
+    @cached_property
+    def essential(self) -> EssentialClasses:
+        """The components and the loops of the surface."""
+        return essential_classes(self.minima, self.maxima, cocycles_of(self.links))
+
+    @cached_property
+    def pairing(self) -> Pairing:
+        """All pairs, by rising persistence."""
+        return pairing_of(self.values, self.minima, self.maxima, self.essential)
+
+    @cached_property
+    def critical_points(self) -> CriticalPoints:
+        """Net vertex, kind, multiplicity and value of each critical point."""
+        return critical_points(self.values, self.rank, self.links)
+
+    @cached_property
+    def separatrices(self) -> Separatrices:
+        """The integral lines from every saddle."""
+        return separatrices_of(np.union1d(self.minima.sectors.vertex, self.maxima.sectors.vertex), self.up, self.down)
+
+    @cached_property
+    def up(self) -> Flow:
+        """The way of every vertex to a maximum."""
+        return flow_to_maxima(self.links, self.positions, self.values, self.rank)
+
+    @cached_property
+    def down(self) -> Flow:
+        """The way of every vertex to a minimum."""
+        return flow_to_minima(self.links, self.positions, self.values, self.rank)
+
+    @cached_property
+    def flow_ends(self) -> tuple[Ints, Ints]:
+        """(m,) the minimum below the lowest corner of each triangle, and the maximum above the highest."""
+        corners = self.links.triangles
+        heights, rows = self.rank[corners], np.arange(len(corners))
+        return self.down.end[corners[rows, heights.argmin(axis=1)]], self.up.end[corners[rows, heights.argmax(axis=1)]]
+
+
+@dataclass(frozen=True, eq=False)
+class MorseSmaleComplex:
+    """The Morse-Smale complex of a field, with some of its pairs cancelled.
+
+    Cancelling forgets nothing: :meth:`simplified` starts from all pairs, whatever this complex has left.
+
+    Attributes
+    ----------
+    topology : FieldTopology
+    n_cancelled : int
+        How many pairs are cancelled, those of least persistence.
+    """
+
+    topology: FieldTopology
     n_cancelled: int = 0
-    _original: "MorseSmaleComplex | None" = None
 
     @cached_property
     def critical_points(self) -> CriticalPoints:
         """Net vertex, kind, multiplicity and value of each critical point that is left."""
-        if self._original is None:
-            return critical_points(self.values, self.minima.rank, self.links)
-        return _without_pairs(self._original.critical_points, self.pairing, self.n_cancelled)
+        if self.n_cancelled == 0:
+            return self.topology.critical_points
+        return _without_pairs(self.topology.critical_points, self.topology.pairing, self.n_cancelled)
 
     @property
     def euler_characteristic(self) -> int:
         """Minima - saddles + maxima, counted with multiplicity."""
         return self.critical_points.euler_characteristic
 
+    @property
+    def pairing(self) -> Pairing:
+        """All pairs of the field, the cancelled ones first."""
+        return self.topology.pairing
+
+    @property
+    def essential(self) -> EssentialClasses:
+        """The components and the loops of the surface, which are never cancelled."""
+        return self.topology.essential
+
+    @cached_property
+    def diagram(self) -> PersistenceDiagram:
+        """The separated persistence diagram of the field, the cancelled pairs included."""
+        known = self.topology
+        return persistence_diagram(known.values, known.minima, known.maxima, known.essential)
+
     @cached_property
     def separatrices(self) -> Separatrices:
         """The lines between the critical points that are left; lines of cancelled saddles are parts of others."""
-        if self._original is None:
-            saddles = np.union1d(self.minima.sectors.vertex, self.maxima.sectors.vertex)
-            return separatrices_of(saddles, self._up, self._down)
-        return extended_lines(self._original.separatrices, self.pairing, self.n_cancelled)
+        if self.n_cancelled == 0:
+            return self.topology.separatrices
+        return extended_lines(self.topology.separatrices, self.pairing, self.n_cancelled)
 
     @cached_property
     def cells(self) -> Cells:
         """The pieces between the separatrices, each of which flows from one minimum to one maximum."""
-        original = self._original or self
-        corners, rank = self.links.triangles, self.minima.rank
-        rows = np.arange(len(corners))
-        lowest, highest = corners[rows, rank[corners].argmin(axis=1)], corners[rows, rank[corners].argmax(axis=1)]
-        survivor = self.pairing.survivor(self.links.n_vertices, self.n_cancelled)
-        minimum, maximum = survivor[original._down.end[lowest]], survivor[original._up.end[highest]]
-        return cells_of(self.links, minimum, maximum, self.separatrices.paths)
+        survivor = self.pairing.survivor(self.topology.links.n_vertices, self.n_cancelled)
+        minimum, maximum = (survivor[ends] for ends in self.topology.flow_ends)
+        return cells_of(self.topology.links, minimum, maximum, self.separatrices.paths)
+
+    @cached_property
+    def reeb_graph(self) -> ReebGraph:
+        """The Reeb graph between the extrema and saddles that are left."""
+        known, pairs = self.topology, self.pairing
+        ends = [pairs.extremum[self.n_cancelled :], pairs.surviving_saddles(self.n_cancelled)]
+        critical = np.unique(np.concatenate([*ends, self.essential.components.ravel()]))
+        return build_reeb_graph(known.values, known.rank, known.links, critical)
 
     def simplified(self, n_pairs: int) -> "MorseSmaleComplex":
         """Return the complex with the ``n_pairs`` most persistent pairs, all others cancelled."""
-        n_cancelled = max(len(self.pairing) - max(n_pairs, 0), 0)
-        original = self._original or self
-        return replace(original, n_cancelled=n_cancelled, _original=original)
+        return replace(self, n_cancelled=max(len(self.pairing) - max(n_pairs, 0), 0))
 
     def above(self, persistence: float) -> "MorseSmaleComplex":
-        """Return the complex with all pairs of at least this persistence, in the unit of the field."""
+        """Return the complex with the pairs of at least this persistence, in the unit of the field."""
         return self.simplified(int((self.pairing.persistence >= persistence).sum()))
-
-    @cached_property
-    def _up(self) -> Flow:
-        return flow_to_maxima(self.links, self.positions, self.values, self.minima.rank)
-
-    @cached_property
-    def _down(self) -> Flow:
-        return flow_to_minima(self.links, self.positions, self.values, self.minima.rank)
 
 
 def _without_pairs(points: CriticalPoints, pairing: Pairing, n_cancelled: int) -> CriticalPoints:

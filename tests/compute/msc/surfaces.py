@@ -1,38 +1,20 @@
 """Surfaces of known topology and fields on them."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from compute.mesh import TriangleMesh
-from compute.msc.cohomology import Cocycles, cocycles_of
-from compute.msc.critical_points import rank_vertices
-from compute.msc.diagram import PersistenceDiagram, persistence_diagram
-from compute.msc.links import Links, links_of
-from compute.msc.merge_tree import MergeTree, merge_tree
-from compute.msc.persistence import EssentialClasses, essential_classes
+from compute.msc.diagram import PersistenceDiagram
+from compute.msc.links import links_of
+from compute.msc.morse_smale import FieldTopology, MorseSmaleComplex
 from tests.shapes import icosphere, rectangle, torus
 
 
-@dataclass(frozen=True, eq=False)
-class Topology:
-    """All there is to know of a field."""
-
-    links: Links
-    cocycles: Cocycles
-    minima: MergeTree
-    maxima: MergeTree
-    essential: EssentialClasses
-    diagram: PersistenceDiagram
+def topology(mesh: TriangleMesh, values: np.ndarray) -> FieldTopology:
+    return FieldTopology(links_of(mesh.triangles, len(mesh.vertices)), mesh.vertices, values)
 
 
-def topology(mesh: TriangleMesh, values: np.ndarray) -> Topology:
-    links = links_of(mesh.triangles, len(mesh.vertices))
-    rank = rank_vertices(values)
-    minima, maxima = merge_tree(rank, links), merge_tree(len(rank) - 1 - rank, links)
-    cocycles = cocycles_of(links)
-    essential = essential_classes(minima, maxima, cocycles)
-    return Topology(links, cocycles, minima, maxima, essential, persistence_diagram(values, minima, maxima, essential))
+def diagram_of(mesh: TriangleMesh, values: np.ndarray) -> PersistenceDiagram:
+    return MorseSmaleComplex(topology(mesh, values)).diagram
 
 
 def closed_surface(genus: int) -> TriangleMesh:

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from compute.errors import FieldError
 from compute.msc.diagram import PersistenceDiagram, persistence_curve, size_function
 from compute.msc.diagram_distance import bottleneck_distance, diagram_distance
-from tests.compute.msc.surfaces import closed_surface, noise, topology, waves, with_holes
+from tests.compute.msc.surfaces import closed_surface, diagram_of, noise, waves, with_holes
 from tests.shapes import icosphere
 
 SURFACE = icosphere(1)
@@ -34,7 +34,7 @@ def test_negated_field_has_the_mirrored_diagram():
     rng = np.random.default_rng(0)
     for mesh in (closed_surface(0), closed_surface(2), with_holes(closed_surface(1), rng)):
         values = noise(mesh, rng)
-        mirrored, expected = topology(mesh, values).diagram.negated(), topology(mesh, -values).diagram
+        mirrored, expected = diagram_of(mesh, values).negated(), diagram_of(mesh, -values)
         for name in ("points", "components", "loops"):
             ours, theirs = getattr(mirrored, name), getattr(expected, name)
             np.testing.assert_array_equal(ours[np.lexsort(ours.T)], theirs[np.lexsort(theirs.T)])
@@ -52,7 +52,7 @@ def test_bottleneck_distance_of_smooth_and_noisy_fields_is_gudhis():
     for seed in range(10):
         rng = np.random.default_rng(seed)
         field = waves(mesh, rng)
-        first, second = topology(mesh, field).diagram, topology(mesh, field + 0.1 * noise(mesh, rng)).diagram
+        first, second = diagram_of(mesh, field), diagram_of(mesh, field + 0.1 * noise(mesh, rng))
         expected = gudhis_bottleneck(first.points, second.points)
         assert diagram_distance(first, second, "bottleneck") == pytest.approx(expected, rel=1e-12)
 
@@ -77,7 +77,7 @@ values_on_the_surface = st.lists(st.floats(-1, 1).map(lambda x: round(x, 3)), mi
 def test_diagrams_are_stable(values, change, size):
     """The distance of two diagrams is at most the largest difference of the fields (Cohen-Steiner et al. 2007)."""
     changed = values + size * change
-    first, second = topology(SURFACE, values).diagram, topology(SURFACE, changed).diagram
+    first, second = diagram_of(SURFACE, values), diagram_of(SURFACE, changed)
     largest = np.abs(values - changed).max() * (1 + 1e-12)
     assert diagram_distance(first, second, "hausdorff") <= largest
     assert diagram_distance(first, second, "bottleneck") <= largest
@@ -88,7 +88,7 @@ def test_size_function_counts_components_that_reach_down(seed):
     mesh = closed_surface(1)
     rng = np.random.default_rng(seed)
     values = noise(mesh, rng)
-    diagram = topology(mesh, values).diagram
+    diagram = diagram_of(mesh, values)
     sides, n = mesh.edges.vertices, len(values)
     for _ in range(50):
         x, y = np.sort(rng.normal(size=2))
@@ -100,12 +100,12 @@ def test_size_function_counts_components_that_reach_down(seed):
 
 def test_persistence_curve_counts_the_pairs_above_a_threshold():
     mesh = closed_surface(0)
-    diagram = topology(mesh, noise(mesh, np.random.default_rng(0))).diagram
+    diagram = diagram_of(mesh, noise(mesh, np.random.default_rng(0)))
     threshold, count = persistence_curve(diagram)
     assert (count == (diagram.persistence[:, None] >= threshold).sum(axis=0)).all()
 
 
 def test_unknown_metric_is_refused():
-    diagram = topology(SURFACE, SURFACE.vertices[:, 0]).diagram
+    diagram = diagram_of(SURFACE, SURFACE.vertices[:, 0])
     with pytest.raises(FieldError, match="wasserstein"):
         diagram_distance(diagram, diagram, "wasserstein")

@@ -8,15 +8,12 @@ from compute.msc.critical_points import Kind, rank_vertices
 from compute.msc.integral_lines import ascent_of, exits_of, steepest_exits, trace
 from compute.msc.links import links_of
 from compute.msc.morse_smale import MorseSmaleComplex
-from compute.msc.pairing import pairing_of
 from tests.compute.msc.surfaces import closed_surface, noise, topology, waves
 from tests.shapes import icosphere, rectangle, torus
 
 
 def complex_of(mesh: TriangleMesh, values: np.ndarray) -> MorseSmaleComplex:
-    known = topology(mesh, values)
-    pairing = pairing_of(values, known.minima, known.maxima, known.essential)
-    return MorseSmaleComplex(known.links, mesh.vertices, values, known.minima, known.maxima, pairing)
+    return MorseSmaleComplex(topology(mesh, values))
 
 
 def harmonic_sphere() -> MorseSmaleComplex:
@@ -75,8 +72,8 @@ def test_lines_run_monotonely_from_saddle_to_extremum(build):
     found = build()
     lines = found.separatrices
     for saddle, extremum, rises, line in zip(lines.saddle, lines.extremum, lines.rises, lines.lines, strict=True):
-        np.testing.assert_array_equal(line[[0, -1]], found.positions[[saddle, extremum]])
-        assert (found.values[extremum] > found.values[saddle]) == rises
+        np.testing.assert_array_equal(line[[0, -1]], found.topology.positions[[saddle, extremum]])
+        assert (found.topology.values[extremum] > found.topology.values[saddle]) == rises
 
 
 @pytest.mark.parametrize("build", [harmonic_sphere, wavy_torus])
@@ -95,9 +92,9 @@ def test_cells_are_twice_the_saddles_at_every_level(build):
 def test_each_cell_lies_between_one_minimum_and_one_maximum(build):
     """Of the lines along its rim, all that rise end at its maximum and all others at its minimum."""
     found = build()
-    sides = {tuple(sorted(edge)): row for row, edge in enumerate(found.links.edges.vertices.tolist())}
+    sides = {tuple(sorted(edge)): row for row, edge in enumerate(found.topology.links.edges.vertices.tolist())}
     cells_at = [[] for _ in sides]
-    for triangle, row in enumerate(found.links.edges.of_triangle.tolist()):
+    for triangle, row in enumerate(found.topology.links.edges.of_triangle.tolist()):
         for edge in row:
             cells_at[edge].append(found.cells.of_triangle[triangle])
     lines = found.separatrices

@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 
 from compute.mesh import TriangleMesh
+from compute.msc.cohomology import cocycles_of
+from compute.msc.morse_smale import FieldTopology, MorseSmaleComplex
 from tests.compute.msc import surfaces
 from tests.compute.msc.reference import pairs_of_the_paper
-from tests.compute.msc.surfaces import Topology, closed_surface, noise, topology, waves, with_holes
+from tests.compute.msc.surfaces import closed_surface, diagram_of, noise, topology, waves, with_holes
 from tests.shapes import icosphere, joined, rectangle, torus
 
 N_FIELDS = 60
@@ -41,17 +43,17 @@ def same_points(ours: np.ndarray, theirs: np.ndarray) -> None:
         np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-12)
 
 
-def same_as_gudhi(ours: Topology, mesh: TriangleMesh, values: np.ndarray, is_closed: bool) -> None:
-    tree = filtration(mesh, values)
+def same_as_gudhi(ours: FieldTopology, mesh: TriangleMesh, values: np.ndarray, is_closed: bool) -> None:
+    diagram, tree = MorseSmaleComplex(ours).diagram, filtration(mesh, values)
     tree.compute_persistence(homology_coeff_field=2, persistence_dim_max=True)
-    assert tuple(tree.betti_numbers()) + (0,) * (3 - len(tree.betti_numbers())) == ours.cocycles.betti
+    assert tuple(tree.betti_numbers()) + (0,) * (3 - len(tree.betti_numbers())) == cocycles_of(ours.links).betti
     for dimension in range(3 if is_closed else 1):
-        same_points(ours.diagram.intervals(dimension), tree.persistence_intervals_in_dimension(dimension))
+        same_points(diagram.intervals(dimension), tree.persistence_intervals_in_dimension(dimension))
     tree.extend_filtration()
     ordinary, relative, *extended = tree.extended_persistence(homology_coeff_field=2)
     extended = extended[0] + extended[1]
     theirs = [(ordinary, 0), (relative, 1), (extended, 0), (extended, 1)]
-    for points, (found, dimension) in zip(ours.diagram.extended_intervals(), theirs, strict=True):
+    for points, (found, dimension) in zip(diagram.extended_intervals(), theirs, strict=True):
         # GUDHI leaves out points on the diagonal.
         off_diagonal = points[points[:, 0] != points[:, 1]]
         same_points(off_diagonal, [interval for d, interval in found if d == dimension])
@@ -107,7 +109,7 @@ def test_genus_g_leaves_2g_saddles_in_g_pairs(genus):
 
 def test_handle_of_a_standing_torus_reaches_from_the_lower_to_the_upper_saddle():
     mesh = torus(48, 24, radius=3, thickness=1)
-    diagram = topology(mesh, mesh.vertices[:, 0]).diagram
+    diagram = diagram_of(mesh, mesh.vertices[:, 0])
     np.testing.assert_allclose(diagram.components, [[-4, 4]])
     np.testing.assert_allclose(np.sort(diagram.loops, axis=0), [[-2, -2], [2, 2]], atol=1e-12)
     assert len(diagram.points) == 0
@@ -115,7 +117,7 @@ def test_handle_of_a_standing_torus_reaches_from_the_lower_to_the_upper_saddle()
 
 def test_constant_field_has_no_pairs_and_keeps_the_loops():
     mesh = closed_surface(2)
-    diagram = topology(mesh, np.full(len(mesh.vertices), 7.0)).diagram
+    diagram = diagram_of(mesh, np.full(len(mesh.vertices), 7.0))
     assert len(diagram.points) == 0
     assert (diagram.essential == 7).all()
     assert len(diagram.essential) == 1 + 4
