@@ -81,7 +81,8 @@ def _divide_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[s
     outcome = analyze_arrays(exchange.read_mesh(mesh), _engine_options(mesh, options.field), silent)
     state.store(mesh, outcome.stored, outcome.description)
     choice = {name: getattr(options, name) for name in ("level", "threshold", "n_parts")}
-    labels = results.segment_mesh(mesh, **{name: value for name, value in choice.items() if value is not None})
+    given = {name: value for name, value in choice.items() if value is not None}
+    labels = results.segment_mesh(mesh, mode="features", **given)
     return {
         "name": obj.name,
         "level": labels.level,

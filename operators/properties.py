@@ -1,10 +1,19 @@
 """The settings the user sees: how to analyze, which level to show, and how far a job is."""
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from . import engine, results, state
 from .refusals import Refusal
+
+
+# In the order of state.MODES.
+MODE_ITEMS = [
+    ("NESTED", "Nested", "Levels overlaid: also what lies between features, and small features inside large ones"),
+    ("FEATURES", "Features", "Only what protrudes: each feature that is kept is one part, all else is body"),
+]
 
 
 class AnalysisOptions:
@@ -66,9 +75,24 @@ def _set_n_parts(settings: "EigenpartsMeshSettings", n_parts: int) -> None:
     _segment(settings.id_data, n_parts=n_parts)
 
 
+def _mode(settings: "EigenpartsMeshSettings") -> int:
+    return state.MODES.index(state.mode_of(settings.id_data))
+
+
+def _set_mode(settings: "EigenpartsMeshSettings", mode: int) -> None:
+    _segment(settings.id_data, mode=state.MODES[mode], level=_level(settings))
+
+
 class EigenpartsMeshSettings(bpy.types.PropertyGroup):
     """What a mesh shows now; the values live in its state, so they follow it through undo, copies and files."""
 
+    mode: EnumProperty(
+        name="Mode",
+        description="What becomes a part",
+        items=MODE_ITEMS,
+        get=_mode,
+        set=_set_mode,
+    )
     level: IntProperty(
         name="Level",
         description="How many of the most prominent features are parts",
@@ -102,7 +126,7 @@ def _summary_value(settings: EigenpartsMeshSettings, name: str) -> int:
     return len(summary.parts) if name == "n_parts" else getattr(summary, name)
 
 
-def _segment(mesh: bpy.types.Mesh, **choice: int) -> None:
+def _segment(mesh: bpy.types.Mesh, **choice: Any) -> None:
     """Segment at once; a property cannot report, so the panel tells what went wrong."""
     status = bpy.context.window_manager.eigenparts
     try:

@@ -17,11 +17,13 @@ RESULTS = (PART, PART_VERTEX, PART_COLOR)
 PREVIOUS_COLOR = "eigenparts_previous_color"
 
 
-def segment_mesh(mesh: bpy.types.Mesh, **choice: float) -> "engine.BranchLabels":
+def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: float) -> "engine.BranchLabels":
     """Divide an analyzed mesh into parts and write them.
 
     Parameters
     ----------
+    mode : "features" or "nested", optional
+        The one that the mesh shows, if None.
     **choice
         One of ``level``, ``threshold`` and ``n_parts``, or none for the default level.
 
@@ -32,9 +34,10 @@ def segment_mesh(mesh: bpy.types.Mesh, **choice: float) -> "engine.BranchLabels"
     """
     refuse_foreign(mesh, RESULTS)
     analysis = state.load(mesh)
-    labels = engine.label_branches(analysis.hierarchy, analysis.branches, **choice)
+    mode = mode or state.mode_of(mesh)
+    labels = engine.label_branches(analysis.hierarchy, analysis.branches, mode=mode, **choice)
     write_labels(mesh, labels.of_faces(tuple(branches.of_face for branches in analysis.branches)))
-    state.remember_segmentation(mesh, labels.level, labels.parts)
+    state.remember_segmentation(mesh, labels, mode)
     return labels
 
 

@@ -1,9 +1,10 @@
 """Operator: divide an analyzed mesh into parts at another level."""
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from . import results, state
+from .properties import MODE_ITEMS
 from .refusals import can_use_active_mesh, refusals_told
 from .viewport import show_vertex_colours
 
@@ -23,6 +24,13 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
     )
     n_parts: IntProperty(name="Parts", description="How many parts, the body included", options={"SKIP_SAVE"})
 
+    mode: EnumProperty(
+        name="Mode",
+        description="What becomes a part; if not given, as it is on the mesh",
+        items=MODE_ITEMS,
+        options={"SKIP_SAVE"},
+    )
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if not can_use_active_mesh(cls, context):
@@ -34,7 +42,10 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         given = [name for name in ("level", "threshold", "n_parts") if self.properties.is_property_set(name)]
         with refusals_told(self):
-            labels = results.segment_mesh(context.object.data, **{name: getattr(self, name) for name in given})
+            mode = self.mode.lower() if self.properties.is_property_set("mode") else None
+            labels = results.segment_mesh(
+                context.object.data, mode=mode, **{name: getattr(self, name) for name in given}
+            )
             show_vertex_colours(context)
             for warning in labels.warnings:
                 self.report({"WARNING"}, warning)

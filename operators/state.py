@@ -23,6 +23,9 @@ BRANCHES = (
     OwnAttribute("eigenparts_branch_minima", "INT", "FACE"),
 )
 
+# How levels are read, the default first.
+MODES = ("nested", "features")
+
 NEWER = "This mesh was analyzed by a newer version of Eigenparts; update the extension or analyze the mesh again."
 CHANGED = "The mesh was changed after it was analyzed; analyze it again."
 DAMAGED = "The analysis stored on this mesh is damaged; analyze it again."
@@ -75,6 +78,7 @@ def is_analyzed(mesh: bpy.types.Mesh) -> bool:
 def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, description: str) -> None:
     """Put an analysis on the mesh it was made from, in place of an earlier one."""
     hierarchy = analysis.hierarchy
+    mode = mode_of(mesh)
     remove_own_attributes(mesh, [own.name for own in BRANCHES[len(analysis.branches) :]])
     for own, branches in zip(BRANCHES, analysis.branches, strict=False):
         write_attribute(mesh, own, branches.of_face)
@@ -82,6 +86,7 @@ def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, description: str) -> N
         "schema": SCHEMA,
         "fingerprint": fingerprint(mesh),
         "description": description,
+        "mode": mode,
         "hierarchy": _packed(hierarchy, _features(hierarchy)),
         **{f"tree_{i}": _packed(tree) for i, tree in enumerate(hierarchy.trees)},
         **{f"branches_{i}": _packed(branches) for i, branches in enumerate(analysis.branches)},
@@ -108,10 +113,18 @@ def load(mesh: bpy.types.Mesh) -> StoredAnalysis:
     return analysis
 
 
-def remember_segmentation(mesh: bpy.types.Mesh, level: int, parts: "engine.Parts") -> None:
-    """Store which level the mesh shows and what parts it has."""
-    mesh[STATE]["level"] = level
-    mesh[STATE]["parts"] = _packed(parts)
+def remember_segmentation(mesh: bpy.types.Mesh, labels: "engine.BranchLabels", mode: str) -> None:
+    """Store which level the mesh shows, in which mode, and what parts it has."""
+    mesh[STATE]["level"] = labels.level
+    mesh[STATE]["mode"] = mode
+    mesh[STATE]["parts"] = _packed(labels.parts)
+
+
+def mode_of(mesh: bpy.types.Mesh) -> str:
+    """Return the mode the mesh was last divided in, the default one if it never was."""
+    state = mesh.get(STATE)
+    mode = state.get("mode") if hasattr(state, "keys") else None
+    return mode if mode in MODES else MODES[0]
 
 
 def summarize(mesh: bpy.types.Mesh) -> Summary:

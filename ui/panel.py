@@ -71,6 +71,7 @@ def _draw_options(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, summary: state.Summary) -> None:
     layout.label(text=f"{summary.description}, levels 0 to {summary.n_levels - 1}")
+    layout.row().prop(mesh.eigenparts, "mode", expand=True)
     column = layout.column(align=True)
     column.prop(mesh.eigenparts, "level")
     column.prop(mesh.eigenparts, "n_parts")

@@ -13,10 +13,22 @@ def engine(star):
     return analyze(TriangleMesh(np.float32(star.vertices), star.triangles))
 
 
+@pytest.mark.parametrize("mode", ["features", "nested"])
 @pytest.mark.parametrize("choice", [{"level": 0}, {"level": 2}, {"threshold": 0.3}, {"n_parts": 4}, {}])
-def test_parts_are_those_of_the_engine(analyzed, engine, choice):
-    bpy.ops.eigenparts.segment(**choice)
-    np.testing.assert_array_equal(values_of(analyzed.data, "part"), engine.segment(**choice).labels)
+def test_parts_are_those_of_the_engine(analyzed, engine, choice, mode):
+    bpy.ops.eigenparts.segment(**choice, mode=mode.upper())
+    np.testing.assert_array_equal(values_of(analyzed.data, "part"), engine.segment(**choice, mode=mode).labels)
+
+
+def test_the_mode_stays_until_another_is_chosen(analyzed, engine):
+    assert analyzed.data.eigenparts.mode == "NESTED"
+    analyzed.data.eigenparts.mode = "FEATURES"
+    analyzed.data.eigenparts.level = 2
+    bpy.ops.eigenparts.segment(level=3)
+    assert analyzed.data.eigenparts.mode == "FEATURES"
+    bpy.ops.eigenparts.analyze()
+    assert analyzed.data.eigenparts.mode == "FEATURES"
+    np.testing.assert_array_equal(values_of(analyzed.data, "part"), engine.segment(mode="features").labels)
 
 
 def test_every_level_can_be_reached_from_the_panel(analyzed, engine):
