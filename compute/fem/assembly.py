@@ -58,6 +58,8 @@ def element_mass(metric: Metric, element: ReferenceElement) -> Floats:
 
 def assemble(elements: Ints, matrices: Floats, n_unknowns: int) -> csr_array:
     """Return the (N, N) sum of the (T, n, n) element matrices over their unknowns."""
+    # Narrow indices make the conversion several times faster.
+    elements = elements.astype(np.int32)
     n_local = elements.shape[1]
     rows = np.repeat(elements, n_local, axis=1).ravel()
     columns = np.tile(elements, (1, n_local)).ravel()

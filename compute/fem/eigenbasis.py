@@ -3,25 +3,18 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh, splu
 
 from ..errors import SpectrumError
-from ..mesh import Floats, Ints, TriangleMesh
+from ..mesh import Bools, Floats, Ints, TriangleMesh
 from ..progress import Progress, silent
 from ..surface import Surface, clean_surface
-from .assembly import mass_matrix, stiffness_matrix
-from .ordering import bisect_triangles, elimination_order
+from .assembly import mass_matrix
+from .degenerate import fixed_basis
+from .eigensolver import eigen_problem, lowest_eigenpairs
 from .space import FunctionSpace, function_space
 
 BOUNDARIES = ("neumann", "dirichlet")
-
-# Shift of the factored operator, in units of 1 / area of the mesh: below every eigenvalue, so that the factor exists.
-SHIFT = -4.0
-
-# Smaller problems are solved as full matrices.
-DENSE_UNKNOWNS = 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,40 +95,46 @@ def solve_on_surface(
     *,
     order: int = 3,
     boundary: str = "neumann",
+    largest_ratio: float = np.inf,
     progress: Progress | None = None,
 ) -> Eigenbasis:
-    """Return the smoothest eigenfunctions of a surface that is already clean; see `solve_eigenbasis`."""
+    """Return the smoothest eigenfunctions of a surface that is already clean; see `solve_eigenbasis`.
+
+    Parameters
+    ----------
+    largest_ratio : float
+        Functions whose eigenvalue exceeds the first one this many times are left out, and not computed.
+    """
     progress = progress or silent
     progress(0.0, "Building the finite elements")
     space = function_space(surface.mesh, order)
-    free = _free_unknowns(space, boundary)
-    n_skipped = 1 if boundary == "neumann" else 0
-    _check_count(n_functions, len(free) - n_skipped)
-    area = surface.mesh.areas.sum()
-    stiffness, mass = stiffness_matrix(space), mass_matrix(space)
-    progress(0.1, "Factoring")
-    values, columns = _smallest_eigenpairs(stiffness, mass, free, space, n_functions + n_skipped, progress)
-    functions = np.zeros((space.n_unknowns, n_functions))
-    functions[free] = _with_fixed_sign(columns[:, n_skipped:]) / np.sqrt(area)
+    is_free = _free_unknowns(space, boundary)
+    n_constant = 1 if boundary == "neumann" else 0
+    _check_count(n_functions, int(is_free.sum()) - n_constant)
+    problem = eigen_problem(space, is_free)
+    values, functions = lowest_eigenpairs(problem, n_functions + n_constant, n_constant, largest_ratio, progress)
+    values, functions = values[n_constant:], functions[:, n_constant:]
+    kept = values <= largest_ratio * values[0]
+    mass, area = mass_matrix(space), surface.mesh.areas.sum()
+    functions = fixed_basis(values[kept], functions[:, kept], mass, space.nodes / np.sqrt(area))
+    progress(1.0, "Eigenfunctions found")
     n_vertices = len(surface.vertex_of_input)
     functions[:n_vertices] = functions[surface.vertex_of_input]
-    progress(1.0, "Eigenfunctions found")
+    functions /= np.sqrt(area)
     return Eigenbasis(
-        values[n_skipped:] / area, functions, mass * area, space.nodes, space.elements, order, boundary, surface
+        values[kept] / area, functions, mass * area, space.nodes, space.elements, order, boundary, surface
     )
 
 
-def _free_unknowns(space: FunctionSpace, boundary: str) -> Ints:
-    """Return the unknowns that are solved for, in their order of elimination."""
+def _free_unknowns(space: FunctionSpace, boundary: str) -> Bools:
+    """Return (N,) which unknowns are solved for."""
     if boundary not in BOUNDARIES:
         raise SpectrumError(f'The boundary condition is "neumann" or "dirichlet", not "{boundary}".')
-    is_free = space.has_mass
-    if boundary == "dirichlet":
-        if not space.on_boundary.any():
-            raise SpectrumError("The surface is closed, so there is no boundary to hold at zero; use Neumann.")
-        is_free = is_free & ~space.on_boundary
-    ordered = elimination_order(space.elements, bisect_triangles(space.mesh), space.n_unknowns)
-    return ordered[is_free[ordered]]
+    if boundary == "neumann":
+        return space.has_mass
+    if not space.on_boundary.any():
+        raise SpectrumError("The surface is closed, so there is no boundary to hold at zero; use Neumann.")
+    return space.has_mass & ~space.on_boundary
 
 
 def _check_count(n_functions: int, available: int) -> None:
@@ -145,41 +144,3 @@ def _check_count(n_functions: int, available: int) -> None:
         raise SpectrumError(
             f"The mesh carries only {available} eigenfunctions, not {n_functions}; subdivide it or ask for less."
         )
-
-
-def _smallest_eigenpairs(
-    stiffness: csr_array, mass: csr_array, free: Ints, space: FunctionSpace, n_pairs: int, progress: Progress
-) -> tuple[Floats, Floats]:
-    """Return the smallest eigenvalues and their functions on the free unknowns, orthonormal in the mass matrix."""
-    stiffness, mass = stiffness[free][:, free], mass[free][:, free]
-    if len(free) <= max(DENSE_UNKNOWNS, 4 * n_pairs):
-        values, functions = scipy.linalg.eigh(stiffness.toarray(), mass.toarray(), subset_by_index=[0, n_pairs - 1])
-        return values, functions
-    factor = splu(
-        (stiffness - SHIFT * mass).tocsc(),
-        permc_spec="NATURAL",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    n_solves = 0
-
-    def solve(column: Floats) -> Floats:
-        nonlocal n_solves
-        n_solves += 1
-        progress(0.5 + 0.5 * n_solves / (n_solves + 3 * n_pairs), "Computing eigenfunctions")
-        return factor.solve(column)
-
-    inverse = LinearOperator(stiffness.shape, matvec=solve, dtype=np.float64)
-    start = np.random.default_rng(0).standard_normal(len(free))
-    try:
-        values, functions = eigsh(stiffness, n_pairs, mass, sigma=SHIFT, v0=start, OPinv=inverse)
-    except ArpackError as error:
-        raise SpectrumError(f"The {n_pairs} eigenfunctions did not converge; repair slivers or remesh.") from error
-    by_value = np.argsort(values)
-    return values[by_value], functions[:, by_value]
-
-
-def _with_fixed_sign(functions: Floats) -> Floats:
-    """Flip each column so that its entry of largest magnitude is positive."""
-    largest = np.abs(functions).argmax(axis=0)
-    return functions * np.sign(functions[largest, np.arange(functions.shape[1])])

@@ -1,0 +1,177 @@
+"""The lowest eigenpairs in a finite element space: linear elements first, and from there to the order asked for."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ..errors import SpectrumError
+from ..mesh import Bools, Floats, Ints
+from ..progress import Progress, section
+from .assembly import Metric, assemble, element_mass, element_stiffness, metric
+from .block_lanczos import Pencil, smallest_eigenpairs
+from .ordering import bisect_triangles, elimination_order
+from .shift_invert import SHIFT, arpack_eigenpairs, dense_eigenpairs, factored
+from .space import FunctionSpace, function_space
+
+# Error of the eigenfunctions, in the sense of `compute.fem.block_lanczos`; eigenvalues have its square.
+TOLERANCE = 1e-6
+
+# Accuracy of the linear eigenvalues that a higher order starts from; their own discretization error is larger.
+START_TOLERANCE = 1e-4
+
+# Below this many unknowns ARPACK is as fast as the block iteration with its linear start.
+BLOCK_UNKNOWNS = 5000
+
+# Smaller problems, and those where a good part of all functions is wanted, are solved as full matrices.
+DENSE_UNKNOWNS = 400
+DENSE_SHARE = 1 / 5
+
+# Functions that are iterated at a time; more where symmetry makes eigenvalues multiple, which linear elements show.
+LEAST_WIDTH = 4
+MOST_MULTIPLE = 12
+SAME_VALUE = 1e-3
+
+# Eigenvalues of linear elements are too large; up to this much when they decide how many functions are needed.
+LINEAR_EXCESS = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class EigenProblem:
+    """The Laplace-Beltrami operator in a finite element space, in units in which the area is 1.
+
+    Attributes
+    ----------
+    space : FunctionSpace
+        N unknowns.
+    is_free : (N,) bool
+        Which unknowns are solved for; the functions are zero at the others.
+    codes : (T,) int64
+        Leaves of the nested dissection, see `compute.fem.ordering`.
+    metric : Metric
+        Shape of the triangles.
+    """
+
+    space: FunctionSpace
+    is_free: Bools
+    codes: Ints
+    metric: Metric
+
+    @cached_property
+    def linear(self) -> "EigenProblem":
+        """The same with linear elements."""
+        space = function_space(self.space.mesh, 1)
+        return EigenProblem(space, self.is_free[: space.n_unknowns], self.codes, self.metric)
+
+    def element_matrices(self) -> tuple[Floats, Floats]:
+        """Return (T, n, n) stiffness and mass of each triangle."""
+        return element_stiffness(self.metric, self.space.element), element_mass(self.metric, self.space.element)
+
+    @cached_property
+    def elimination_order(self) -> Ints:
+        """The free unknowns in an order of elimination that keeps factors sparse."""
+        unknowns = elimination_order(self.space.elements, self.codes, self.space.n_unknowns)
+        return unknowns[self.is_free[unknowns]]
+
+    def matrices(self, unknowns: Ints) -> tuple[csr_array, csr_array]:
+        """Return stiffness and mass of some unknowns, in their order."""
+        row = np.full(self.space.n_unknowns, len(unknowns))
+        row[unknowns] = np.arange(len(unknowns))
+        # All others share one more row, which is cut off.
+        stiffness, mass = (assemble(row[self.space.elements], m, len(unknowns) + 1) for m in self.element_matrices())
+        return stiffness[:-1, :-1], mass[:-1, :-1]
+
+
+def eigen_problem(space: FunctionSpace, is_free: Bools) -> EigenProblem:
+    """Return the eigenvalue problem for the free unknowns of a space."""
+    return EigenProblem(space, is_free, bisect_triangles(space.mesh), metric(space.mesh))
+
+
+def lowest_eigenpairs(
+    problem: EigenProblem, n_pairs: int, n_constant: int, largest_ratio: float, progress: Progress
+) -> tuple[Floats, Floats]:
+    """Return the smallest eigenvalues and their functions.
+
+    Parameters
+    ----------
+    problem : EigenProblem
+    n_pairs : int
+        How many pairs, the constant counted.
+    n_constant : int
+        1 if the constant is among them, else 0.
+    largest_ratio : float
+        Pairs may be left out if their value exceeds the first that is not zero this many times.
+
+    Returns
+    -------
+    values : (k,) float64
+        In units of 1 / area, ascending.
+    functions : (N, k) float64
+        Orthonormal with the area as unit.
+
+    Raises
+    ------
+    SpectrumError
+        If the iteration does not converge.
+    """
+    if problem.space.element.order == 1 or problem.is_free.sum() < BLOCK_UNKNOWNS:
+        return _plain_eigenpairs(problem, n_pairs, 0.0, progress)
+    n_linear = n_pairs + MOST_MULTIPLE
+    if n_linear > DENSE_SHARE * problem.linear.is_free.sum():
+        return _plain_eigenpairs(problem, n_pairs, 0.0, progress)
+    values, functions = _plain_eigenpairs(problem.linear, n_linear, START_TOLERANCE, section(progress, 0.0, 0.15))
+    # One function more than needed shows that none is missing.
+    n_needed = int((values <= LINEAR_EXCESS * largest_ratio * values[n_constant]).sum()) + 1
+    n_pairs = min(n_pairs, n_needed)
+    width = max(LEAST_WIDTH, _multiplicity(values[: n_pairs + MOST_MULTIPLE]) + 1)
+    start = functions[:, : n_pairs + width] @ _mixture(n_pairs + width, width)
+    return _block_eigenpairs(problem, start, n_pairs, section(progress, 0.15, 1.0))
+
+
+def _multiplicity(values: Floats) -> int:
+    """Return the size of the largest group of eigenvalues that follow one another closely."""
+    ends = np.flatnonzero(np.append(np.diff(values) > SAME_VALUE * values[1:], True))
+    return int(np.diff(ends, prepend=-1).max())
+
+
+def _mixture(n_functions: int, width: int) -> Floats:
+    return np.random.default_rng(0).standard_normal((n_functions, width))
+
+
+def _plain_eigenpairs(
+    problem: EigenProblem, n_pairs: int, tolerance: float, progress: Progress
+) -> tuple[Floats, Floats]:
+    """Return the lowest eigenpairs from ARPACK or, if there are few unknowns, from full matrices."""
+    unknowns = problem.elimination_order
+    stiffness, mass = problem.matrices(unknowns)
+    functions = np.zeros((problem.space.n_unknowns, n_pairs))
+    if len(unknowns) <= max(DENSE_UNKNOWNS, n_pairs / DENSE_SHARE):
+        values, functions[unknowns] = dense_eigenpairs(stiffness, mass, n_pairs)
+        return values, functions
+    progress(0.0, "Factoring")
+    factor = factored(stiffness, mass)
+    values, functions[unknowns] = arpack_eigenpairs(
+        stiffness, mass, factor, n_pairs, tolerance, section(progress, 0.3, 1.0)
+    )
+    return values, functions
+
+
+def _block_eigenpairs(
+    problem: EigenProblem, linear_start: Floats, n_pairs: int, progress: Progress
+) -> tuple[Floats, Floats]:
+    """Return the lowest eigenpairs by block Lanczos iteration from linear functions on the same mesh."""
+    space, unknowns = problem.space, problem.elimination_order
+    start = np.zeros((space.n_unknowns, linear_start.shape[1]))
+    start[space.elements] = space.element.barycentric @ linear_start[space.mesh.triangles]
+    stiffness, mass = problem.matrices(unknowns)
+    progress(0.05, "Factoring")
+    factor = factored(stiffness, mass)
+    pencil = Pencil(stiffness, mass, SHIFT, factor.solve)
+    functions = np.zeros((space.n_unknowns, n_pairs))
+    progress = section(progress, 0.4, 1.0)
+    try:
+        values, functions[unknowns] = smallest_eigenpairs(pencil, start[unknowns], n_pairs, TOLERANCE, progress)
+    except (SpectrumError, np.linalg.LinAlgError):
+        values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, 0.0, progress)
+    return values, functions

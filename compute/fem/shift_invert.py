@@ -1,0 +1,75 @@
+"""The plain ways to the lowest eigenpairs: full matrices if they are small, else one sparse factor and ARPACK.
+
+For linear elements and small problems; `compute.fem.block_lanczos` is faster for large ones of higher order.
+"""
+
+import numpy as np
+import scipy.linalg
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import ArpackError, LinearOperator, SuperLU, eigsh, splu
+
+from ..errors import SpectrumError
+from ..mesh import Floats
+from ..progress import Progress
+
+# Shift of the factored operator, in units of 1 / area: below every eigenvalue, so that the operator is definite.
+SHIFT = -4.0
+
+# Size of SuperLU's panels, in columns; half the default suits these narrow fronts better.
+PANEL_COLUMNS = 10
+
+
+def dense_eigenpairs(stiffness: csr_array, mass: csr_array, n_pairs: int) -> tuple[Floats, Floats]:
+    """Return the smallest eigenvalues, ascending, and their functions, by full matrices."""
+    values, functions = scipy.linalg.eigh(stiffness.toarray(), mass.toarray(), subset_by_index=[0, n_pairs - 1])
+    return values, functions
+
+
+def factored(stiffness: csr_array, mass: csr_array) -> SuperLU:
+    """Return the factor of the shifted operator, in the order of elimination that its rows have."""
+    return splu(
+        (stiffness - SHIFT * mass).tocsc(),
+        permc_spec="NATURAL",
+        diag_pivot_thresh=0.0,
+        panel_size=PANEL_COLUMNS,
+        options={"SymmetricMode": True},
+    )
+
+
+def arpack_eigenpairs(
+    stiffness: csr_array, mass: csr_array, factor: SuperLU, n_pairs: int, tolerance: float, progress: Progress
+) -> tuple[Floats, Floats]:
+    """Return the smallest eigenvalues, ascending, and their functions, orthonormal in the mass.
+
+    Parameters
+    ----------
+    stiffness, mass : (N, N) sparse
+        Semidefinite and definite, in units in which the area is 1.
+    factor : SuperLU
+        Of the shifted operator.
+    n_pairs : int
+    tolerance : float
+        Relative accuracy of the eigenvalues; 0 is round-off.
+
+    Raises
+    ------
+    SpectrumError
+        If there is no convergence.
+    """
+    n_solves = 0
+
+    def solve(column: Floats) -> Floats:
+        nonlocal n_solves
+        n_solves += 1
+        # ARPACK takes about three solves a pair, but nobody knows.
+        progress(n_solves / (n_solves + 3 * n_pairs), "Computing eigenfunctions")
+        return factor.solve(column)
+
+    inverse = LinearOperator(stiffness.shape, matvec=solve, dtype=np.float64)
+    start = np.random.default_rng(0).standard_normal(stiffness.shape[0])
+    try:
+        values, functions = eigsh(stiffness, n_pairs, mass, sigma=SHIFT, v0=start, OPinv=inverse, tol=tolerance)
+    except ArpackError as error:
+        raise SpectrumError(f"The {n_pairs} eigenfunctions did not converge; repair slivers or remesh.") from error
+    by_value = np.argsort(values)
+    return values[by_value], functions[:, by_value]
