@@ -124,11 +124,11 @@ class Analysis:
     def _branches_of(self, face_of_triangle: Ints) -> tuple[Branches, ...]:
         graph = face_graph(self.mesh, self.surface, face_of_triangle)
         face = face_of_triangle[self.surface.input_triangle][self.net.triangle_of_surface]
-        found = []
+        shares = []
         for tree, arc in zip(self.hierarchy.trees, self._arc_of_vertex, strict=True):
             rising = -self.field.values if tree.is_of_maxima else self.field.values
-            found.append(build_branches(tree.parent, arc_areas(rising, arc, tree, self.net, face), graph))
-        return tuple(found)
+            shares.append(arc_areas(rising, arc, tree, self.net, face))
+        return build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
 
     def segment(
         self,
@@ -170,7 +170,7 @@ class Analysis:
         """
         branches = self.branches()
         labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
-        of_faces = labels.of_faces(tuple(pieces.of_face for pieces in branches))
+        of_faces = labels.of_faces(branches)
         whole = Segmentation(of_faces, labels.parts, labels.level, labels.warnings)
         return whole if within is None else _divided_further(self, whole, within, mode)
 

@@ -36,7 +36,7 @@ def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: flo
     analysis = state.load(mesh)
     mode = mode or state.mode_of(mesh)
     labels = engine.label_branches(analysis.hierarchy, analysis.branches, mode=mode, **choice)
-    write_labels(mesh, labels.of_faces(tuple(branches.of_face for branches in analysis.branches)))
+    write_labels(mesh, labels.of_faces(analysis.branches))
     state.remember_segmentation(mesh, labels, mode)
     return labels
 

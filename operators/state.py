@@ -206,6 +206,8 @@ def _is_sound(analysis: StoredAnalysis) -> bool:
     """Whether all indices lead somewhere, so that nothing read from a file can do harm."""
     hierarchy = analysis.hierarchy
     n_features = hierarchy.n_levels - 1
+    if len({len(branches.arc) for branches in analysis.branches}) != 1:
+        return False
     return len(hierarchy.pairs) == len(hierarchy.persistence) == len(hierarchy.is_maximum) == n_features and all(
         _is_sound_tree(tree, n_features) and _are_sound_branches(branches, len(tree.parent))
         for tree, branches in zip(hierarchy.trees, analysis.branches, strict=True)

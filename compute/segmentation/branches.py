@@ -14,7 +14,7 @@ from .faces import FaceGraph, sum_by
 
 @dataclass(frozen=True, eq=False)
 class Branches:
-    """The faces of every arc, in connected pieces; B branches.
+    """The faces of every arc of a tree, in connected pieces; B branches.
 
     Attributes
     ----------
@@ -38,27 +38,36 @@ class Branches:
     border_length: Floats
 
 
-def build_branches(parent: Ints, shares: ArcAreas, graph: FaceGraph) -> Branches:
+def build_branches(parents: list[Ints], shares: list[ArcAreas], graph: FaceGraph) -> tuple[Branches, ...]:
     """Give each face the deepest arc of which it has the greater half, and number the connected pieces.
 
     A face lies in a part if and only if more than half of its area does, at every level at once: the subtrees that
     hold more than half of a face are nested, and the face is given to the innermost.
+
+    Parameters
+    ----------
+    parents : list of (A,) int64
+        Parent of each arc, for each tree.
+    shares : list of ArcAreas
+        For each tree.
+    graph : FaceGraph
+
+    Returns
+    -------
+    tuple of Branches
+        For each tree. The pieces are the same in all: connected faces that lie on the same arc of every tree.
     """
-    arc_of_face = _majority_arc(parent, shares, len(graph.area))[graph.stands_for]
+    n_faces = len(graph.area)
+    arcs = [
+        _majority_arc(parent, share, n_faces)[graph.stands_for] for parent, share in zip(parents, shares, strict=True)
+    ]
     left, right = graph.neighbours.T
-    same = arc_of_face[left] == arc_of_face[right]
-    branch_of_face = _pieces(graph, same)[graph.stands_for]
-    _, first, branch_of_face = np.unique(branch_of_face, return_index=True, return_inverse=True)
-    branch_of_face = branch_of_face.reshape(-1)
-    borders, length = _sum_pairs(branch_of_face[graph.neighbours[~same]], graph.length[~same], len(first))
-    return Branches(
-        branch_of_face.astype(np.int32),
-        arc_of_face[first],
-        sum_by(branch_of_face, graph.area),
-        np.bincount(branch_of_face),
-        borders,
-        length,
-    )
+    same = np.logical_and.reduce([arc[left] == arc[right] for arc in arcs])
+    _, first, piece = np.unique(_pieces(graph, same)[graph.stands_for], return_index=True, return_inverse=True)
+    piece = piece.reshape(-1)
+    borders, length = _sum_pairs(piece[graph.neighbours[~same]], graph.length[~same], len(first))
+    of_face, area, count = piece.astype(np.int32), sum_by(piece, graph.area), np.bincount(piece)
+    return tuple(Branches(of_face, arc[first], area, count, borders, length) for arc in arcs)
 
 
 def repaired_labels(labels: Ints, branches: Branches) -> Ints:

@@ -54,24 +54,20 @@ class BranchLabels:
     Attributes
     ----------
     level : int
-    of_branch : tuple of (B,) int64
-        For each tree, the part of each branch; 0 where the branch is in none.
+    of_branch : (B,) int64
+        The part of each branch.
     parts : Parts
     warnings : tuple of str
     """
 
     level: int
-    of_branch: tuple[Ints, ...]
+    of_branch: Ints
     parts: Parts
     warnings: tuple[str, ...] = ()
 
-    def of_faces(self, branch_of_face: tuple[NDArray[np.int32], ...]) -> NDArray[np.int32]:
-        """Return the label of each face from its branch in each tree."""
-        tables = [labels.astype(np.int32) for labels in self.of_branch]
-        labels = tables[0][branch_of_face[0]]
-        for table, branch in zip(tables[1:], branch_of_face[1:], strict=True):
-            labels = np.where(labels == BODY, table[branch], labels)
-        return labels
+    def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
+        """Return the label of each face from its branch."""
+        return self.of_branch.astype(np.int32)[branches[0].of_face]
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,16 +137,33 @@ def label_branches(
 
 
 def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str) -> BranchLabels:
+    return label_behind(cut_arcs(hierarchy, branches, level, mode), hierarchy, branches, level)
+
+
+def cut_arcs(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str = "features") -> list[Ints]:
+    """Return for each tree the part that is cut off at each arc on a level, 0 where nothing is."""
     default_level = hierarchy.default_level
-    cuts = [
+    return [
         _cut_arcs(tree, pieces, level, default_level, mode)
         for tree, pieces in zip(hierarchy.trees, branches, strict=True)
     ]
-    of_branch = tuple(
-        repaired_labels(tree.spread(cut)[pieces.arc], pieces)
-        for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True)
-    )
-    return BranchLabels(level, of_branch, _tabulate(hierarchy, branches, cuts, of_branch))
+
+
+def label_behind(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int) -> BranchLabels:
+    """Label all branches by the part that is cut off next to them, as given for each arc of each tree."""
+    of_branch = repaired_labels(_overlaid(cuts, hierarchy, branches), branches[0])
+    return BranchLabels(level, of_branch, _tabulate(hierarchy, branches[0], cuts, of_branch))
+
+
+def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...]) -> Ints:
+    """Return the label of each branch; where parts of maxima and of minima overlap, the smaller one lies on top."""
+    overlaid, size = np.zeros(len(branches[0].arc), dtype=np.int64), np.full(len(branches[0].arc), np.inf)
+    for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True):
+        label = tree.spread(cut)[pieces.arc]
+        area = sum_by(label, pieces.area)[label]
+        is_on_top = (label > BODY) & (area < size)
+        overlaid, size = np.where(is_on_top, label, overlaid), np.where(is_on_top, area, size)
+    return overlaid
 
 
 def _cut_arcs(tree: ArcTree, pieces: Branches, level: int, default_level: int, mode: str) -> Ints:
@@ -178,20 +191,14 @@ def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts:
     return BranchLabels(best.level, best.of_branch, best.parts, (warning,))
 
 
-def _tabulate(
-    hierarchy: Hierarchy, branches: tuple[Branches, ...], cuts: list[Ints], of_branch: tuple[Ints, ...]
-) -> Parts:
-    n_labels = 1 + max(int(labels.max(initial=0)) for labels in of_branch)
-    area, n_faces = np.zeros(n_labels), np.zeros(n_labels)
+def _tabulate(hierarchy: Hierarchy, pieces: Branches, cuts: list[Ints], of_branch: Ints) -> Parts:
+    n_labels = 1 + int(of_branch.max(initial=0))
     parent, extremum, saddle = np.zeros(n_labels, dtype=np.int64), np.full(n_labels, -1), np.full(n_labels, -1)
-    for tree, pieces, cut, labels in zip(hierarchy.trees, branches, cuts, of_branch, strict=True):
-        area += sum_by(labels, pieces.area, n_labels)
-        n_faces += sum_by(labels, pieces.n_faces.astype(float), n_labels)
+    for tree, cut in zip(hierarchy.trees, cuts, strict=True):
         arcs = np.flatnonzero((cut > BODY) & (cut < n_labels))
         extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
         parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
-    # To every tree the parts of the others are body.
-    area[BODY] = branches[0].area.sum() - area[1:].sum()
-    n_faces[BODY] = branches[0].n_faces.sum() - n_faces[1:].sum()
+    area = sum_by(of_branch, pieces.area)
+    n_faces = sum_by(of_branch, pieces.n_faces.astype(float)).astype(np.int64)
     ids = np.flatnonzero(n_faces > 0)
-    return Parts(ids, parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids].astype(np.int64))
+    return Parts(ids, parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids])

@@ -41,12 +41,17 @@ def test_labels_cover_every_triangle_and_fill_the_table(analysis):
 
 
 @pytest.mark.parametrize("field", ["diffusion", 1, 4])
-def test_parts_are_connected_at_every_level(field):
+@pytest.mark.parametrize("mode", ["features", "nested"])
+def test_parts_are_connected_and_counted_at_every_level(field, mode):
     analysis = analyze(star(), field=field)
     for level in range(analysis.hierarchy.n_levels):
-        labels = analysis.segment(level=level).labels
-        for part in set(labels.tolist()) - {0}:
-            assert n_pieces(analysis.mesh, labels == part) == 1
+        segmentation = analysis.segment(level=level, mode=mode)
+        ids, count = np.unique(segmentation.labels, return_counts=True)
+        assert dict(zip(ids, count, strict=True)) == dict(
+            zip(segmentation.parts.id, segmentation.parts.n_triangles, strict=True)
+        )
+        for part in ids[ids > 0]:
+            assert n_pieces(analysis.mesh, segmentation.labels == part) == 1
 
 
 def test_a_part_only_shrinks_when_the_level_rises(analysis):
