@@ -90,9 +90,12 @@ def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
 
 def _show_progress(context: bpy.types.Context, job: Job) -> None:
     status = context.window_manager.eigenparts
-    status.is_running, status.fraction, status.text = True, job.fraction, job.text
+    shown = f"Eigenparts: {job.text} ({job.fraction:.0%}), ESC to cancel"
+    if status.is_running and status.shown == shown:
+        return
+    status.is_running, status.fraction, status.text, status.shown = True, job.fraction, job.text, shown
     context.window_manager.progress_update(100 * job.fraction)
-    context.workspace.status_text_set(f"Eigenparts: {job.text} ({job.fraction:.0%}), ESC to cancel")
+    context.workspace.status_text_set(shown)
     _redraw_sidebars(context)
 
 

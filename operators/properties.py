@@ -115,6 +115,7 @@ class EigenpartsJobStatus(bpy.types.PropertyGroup):
     is_running: BoolProperty(options={"SKIP_SAVE"})
     fraction: FloatProperty(options={"SKIP_SAVE"}, subtype="FACTOR", min=0, max=1)
     text: StringProperty(options={"SKIP_SAVE"})
+    shown: StringProperty(options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
 
 
