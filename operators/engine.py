@@ -20,6 +20,8 @@ _HOME = {
     "Parts": "segmentation.parts",
     "label_branches": "segmentation.parts",
     "analyze": "analysis",
+    "NOISE_THRESHOLD": "segmentation.hierarchy",
+    "DEFAULT_THRESHOLD": "segmentation.hierarchy",
 }
 
 

@@ -21,3 +21,19 @@ def colours_of_labels(n_labels: int) -> np.ndarray:
 
 def _components(hexadecimal: str) -> tuple[float, ...]:
     return tuple(component / 255 for component in bytes.fromhex(hexadecimal))
+
+
+def _linear(hexadecimal: str) -> tuple[float, ...]:
+    srgb = np.array(_components(hexadecimal))
+    return tuple(np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4).tolist())
+
+
+# Linear RGB of what a Morse-Smale complex is made of: cold at the minima, warm at the maxima.
+COMPLEX_COLOURS = {
+    "minimum": _linear("0077bb"),
+    "saddle": _linear("f0e442"),
+    "maximum": _linear("cc3311"),
+    "rising": _linear("e69f00"),
+    "falling": _linear("66ccee"),
+    "level": _linear("ffffff"),
+}

@@ -11,6 +11,7 @@ from .cells import Cells, cells_of
 from .cohomology import cocycles_of
 from .critical_points import CriticalPoints, Kind, critical_points, rank_vertices
 from .diagram import PersistenceDiagram, persistence_diagram
+from .level_sets import level_set
 from .links import Links
 from .merge_tree import MergeTree, merge_tree
 from .pairing import Pairing, pairing_of
@@ -153,6 +154,11 @@ class MorseSmaleComplex:
         ends = [pairs.extremum[self.n_cancelled :], pairs.surviving_saddles(self.n_cancelled)]
         critical = np.unique(np.concatenate([*ends, self.essential.components.ravel()]))
         return build_reeb_graph(known.values, known.rank, known.links, critical)
+
+    def level_lines(self, height: float) -> list[Floats]:
+        """Return the level set of the field at a height as polylines, (q, 3) each."""
+        known = self.topology
+        return level_set(known.links, known.positions, known.values, height).lines()
 
     def simplified(self, n_pairs: int) -> "MorseSmaleComplex":
         """Return the complex with the ``n_pairs`` most persistent pairs, all others cancelled."""
