@@ -8,7 +8,6 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from . import engine, results, state
 from .refusals import Refusal
 
-
 # In the order of state.MODES.
 MODE_ITEMS = [
     ("NESTED", "Nested", "Levels overlaid: also what lies between features, and small features inside large ones"),
