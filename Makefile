@@ -27,7 +27,7 @@ lint: environment  ## ruff and mypy
 package: environment  ## one installable zip for each platform in dist/
 	@$(RUN) tools/package.py
 
-test-matrix: environment  ## the Blender tests on every supported Blender, or VERSIONS="4.2.23 5.2.3"
+test-matrix: package  ## tests and zip on every supported Blender, or VERSIONS="4.2.23 5.2.3"
 	@$(RUN) tools/test_matrix.py $(VERSIONS)
 
 clean:  ## everything the other targets made

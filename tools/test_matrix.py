@@ -1,8 +1,9 @@
-"""Run the Blender tests on several Blender versions, each in an environment of its own.
+"""Run the Blender tests on several Blender versions, each in an environment of its own, and install the zip in each.
 
 usage: python tools/test_matrix.py [VERSION...]
 """
 
+import platform
 import subprocess
 import sys
 import time
@@ -12,27 +13,45 @@ from environment import BLENDERS, SetUpError, make_environment
 
 ROOT = Path(__file__).parents[1]
 TESTS = ["tests/blender", "tests/cli"]
+SYSTEMS = {
+    "Linux": "linux_x64",
+    "Windows": "windows_x64",
+    "Darwin": f"macos_{platform.machine()}".replace("x86_64", "x64"),
+}
 
 
 def main(versions: list[str]) -> int:
-    """Test each version and print one line for it; return 1 if any failed."""
-    outcomes = [_test(version) for version in versions or BLENDERS]
-    sys.stdout.write("\n" + "\n".join(outcomes) + "\n")
-    return int(any("passed" not in outcome or "failed" in outcome for outcome in outcomes))
+    """Test each version and print one line for it; return 1 if anything failed."""
+    outcomes = [_try(version) for version in versions or BLENDERS]
+    sys.stdout.write("\n" + "\n".join(line for line, _ in outcomes) + "\n")
+    return int(not all(passed for _, passed in outcomes))
 
 
-def _test(version: str) -> str:
+def _try(version: str) -> tuple[str, bool]:
+    """Return one line about a version, and whether all went well."""
     if version not in BLENDERS:
-        return f"Blender {version}: unknown; the table in tools/environment.py has {', '.join(BLENDERS)}"
+        return f"Blender {version}: unknown; tools/environment.py has {', '.join(BLENDERS)}", False
     start = time.monotonic()
     try:
         python = make_environment(ROOT / ".environments" / version, version)
     except SetUpError as error:
-        return f"Blender {version}: {error}"
-    run = subprocess.run([python, "-m", "pytest", "-q", *TESTS], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        return f"Blender {version}: {error}", False
+    tests, tests_passed = _run(python, "-m", "pytest", "-q", *TESTS)
+    package, package_works = _run(python, "tools/try_package.py", _archive())
+    told = f"Blender {version} (Python {BLENDERS[version][0]}): {tests}; from the zip: {package}"
+    return f"{told} [{time.monotonic() - start:.0f} s in all]", tests_passed and package_works
+
+
+def _run(python: Path, *arguments: str) -> tuple[str, bool]:
+    """Run something, show what it prints, and return its last line and whether it went well."""
+    run = subprocess.run([python, *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True)
     sys.stdout.write(run.stdout)
-    last_line = run.stdout.strip().splitlines()[-1].strip("= ")
-    return f"Blender {version} (Python {BLENDERS[version][0]}): {last_line} [{time.monotonic() - start:.0f} s in all]"
+    lines = run.stdout.strip().splitlines()
+    return lines[-1].strip("= ") if lines else "nothing", run.returncode == 0
+
+
+def _archive() -> str:
+    return str(next((ROOT / "dist").glob(f"*{SYSTEMS[platform.system()]}.zip"), ""))
 
 
 if __name__ == "__main__":
