@@ -15,7 +15,7 @@ from .msc.diagram import PersistenceDiagram
 from .msc.links import Links, links_of
 from .msc.morse_smale import FieldTopology, MorseSmaleComplex
 from .msc.reeb import ReebGraph
-from .progress import Progress, section, silent
+from .progress import Progress, rising, section, silent
 from .segmentation.arc_areas import arc_areas
 from .segmentation.branches import Branches, build_branches
 from .segmentation.faces import face_graph
@@ -205,7 +205,7 @@ def analyze(
     EngineError
         With a sentence that says what is wrong with the mesh, the field or the numbers asked for.
     """
-    progress = progress or silent
+    progress = rising(progress or silent)
     progress(0.0, "Checking the mesh")
     surface = clean_surface(mesh)
     chosen = _field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))

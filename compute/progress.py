@@ -20,3 +20,15 @@ def section(progress: Progress, start: float, stop: float) -> Progress:
         progress(start + (stop - start) * min(max(fraction, 0.0), 1.0), text)
 
     return report
+
+
+def rising(progress: Progress) -> Progress:
+    """Return a callback that tells the highest fraction so far: an iteration's own estimate may fall back."""
+    highest = 0.0
+
+    def report(fraction: float, text: str) -> None:
+        nonlocal highest
+        highest = max(highest, fraction)
+        progress(highest, text)
+
+    return report
