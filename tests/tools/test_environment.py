@@ -1,0 +1,52 @@
+"""What a fresh machine is told."""
+
+import sys
+
+import pytest
+
+from tools.pythons import find_python
+from tools.system_libraries import PACKAGE_OF_LIBRARY, explain_failed_import
+
+
+def import_error(library):
+    return f"Traceback ...\nImportError: {library}: cannot open shared object file: No such file or directory\n"
+
+
+@pytest.mark.parametrize("library", list(PACKAGE_OF_LIBRARY))
+def test_a_missing_library_is_named_with_its_package(library):
+    sentence = explain_failed_import(import_error(library))
+    assert library in sentence
+    assert PACKAGE_OF_LIBRARY[library] in sentence.partition("apt install ")[2].rstrip(").").split()
+    assert "\n" not in sentence
+
+
+def test_all_missing_libraries_are_named_at_once(monkeypatch):
+    monkeypatch.setattr("tools.system_libraries._can_load", lambda library: library != "libSM.so.6")
+    sentence = explain_failed_import(import_error("libXi.so.6"))
+    assert "libraries are missing: libXi.so.6, libSM.so.6 (Debian, Ubuntu: apt install libsm6 libxi6)." in sentence
+
+
+def test_an_unknown_library_is_named_without_advice(monkeypatch):
+    monkeypatch.setattr("tools.system_libraries._can_load", lambda library: True)
+    sentence = explain_failed_import(import_error("libodd.so.3"))
+    assert sentence == "Blender cannot be loaded because the system library is missing: libodd.so.3."
+
+
+def test_another_reason_is_passed_on():
+    assert explain_failed_import("ImportError: numpy is too old\n").endswith("ImportError: numpy is too old")
+
+
+def test_the_running_python_is_found_first():
+    assert find_python("{}.{}".format(*sys.version_info)) == sys.executable
+
+
+def test_a_python_that_does_not_exist_is_not_found():
+    assert find_python("3.99") is None
+
+
+def test_a_launcher_without_its_python_is_passed_over(tmp_path, monkeypatch):
+    launcher = tmp_path / "python3.99"
+    launcher.write_text("#!/bin/sh\nexit 127\n")
+    launcher.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert find_python("3.99") is None
