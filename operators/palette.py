@@ -37,3 +37,5 @@ COMPLEX_COLOURS = {
     "falling": _linear("66ccee"),
     "level": _linear("ffffff"),
 }
+# The property that says which of these an object of a traced complex is.
+COMPLEX_ROLE = "eigenparts_role"

@@ -9,13 +9,13 @@ from bpy.props import FloatProperty, IntProperty
 
 from .fresh_analysis import FreshAnalysis
 from .palette import COMPLEX_COLOURS
+from .palette import COMPLEX_ROLE as ROLE
 
-# The object whose complex a collection holds, and what each object in it is: a key of COMPLEX_COLOURS.
+# The object whose complex a collection holds.
 OF_OBJECT = "eigenparts_complex"
-ROLE = "eigenparts_role"
 # Radius of lines and of dots, as fractions of the largest extent of the mesh.
 LINE_RADIUS, DOT_RADIUS = 0.0015, 0.006
-# Above the surface by this fraction of a line's radius, so that neither hides the other.
+# Quads of a ball, around and from pole to pole.
 DOT_SEGMENTS, DOT_RINGS = 16, 8
 
 
@@ -51,7 +51,8 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
         for role, lines in found.lines.items():
             add_object(collection, owner, role, curve_of(role, lines, LINE_RADIUS * size))
         for role, places in found.dots.items():
-            add_object(collection, owner, role, dots_of(role, places, DOT_RADIUS * size))
+            dots = add_object(collection, owner, role, dots_of(role, places, DOT_RADIUS * size))
+            dots["places"] = places.ravel().tolist()
         n_dots = sum(len(places) for places in found.dots.values())
         self.report({"INFO"}, f'{n_dots} critical points are in the collection "{collection.name}".')
         return {"FINISHED"}
@@ -91,13 +92,16 @@ def name_of_scene_collection(context: bpy.types.Context, collection: bpy.types.C
     return next((c.name for c in context.scene.collection.children_recursive if c == collection), None)
 
 
-def add_object(collection: bpy.types.Collection, owner: bpy.types.Object, role: str, data: bpy.types.ID) -> None:
+def add_object(
+    collection: bpy.types.Collection, owner: bpy.types.Object, role: str, data: bpy.types.ID
+) -> bpy.types.Object:
     """Put data in the place of the mesh, following it."""
     obj = bpy.data.objects.new(data.name, data)
     obj[ROLE] = role
     obj.parent = owner
     obj.color = (*COMPLEX_COLOURS[role], 1.0)
     collection.objects.link(obj)
+    return obj
 
 
 def curve_of(role: str, lines: list[np.ndarray], radius: float) -> bpy.types.Curve:

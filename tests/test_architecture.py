@@ -16,7 +16,12 @@ MAY_IMPORT = {
     "cli": {"compute", "operators"},
     "ui": {"operators.state", "operators.palette"},
 }
-OUTSIDE = {"compute": {"numpy", "scipy"}, "operators": {"bpy", "numpy"}, "cli": {"bpy", "numpy"}, "ui": {"bpy"}}
+OUTSIDE = {
+    "compute": {"numpy", "scipy"},
+    "operators": {"bpy", "numpy"},
+    "cli": {"bpy", "numpy"},
+    "ui": {"bpy", "gpu", "gpu_extras", "mathutils"},
+}
 
 # A part of the engine may import only parts that stand before it: the path of the data, read from left to right.
 PIPELINE = [
