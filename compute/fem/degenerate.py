@@ -29,17 +29,19 @@ def fixed_basis(values: Floats, functions: Floats, mass: csr_array, nodes: Float
     nodes : (N, 3) float64
         In units of the root of the area.
     """
-    fixed = functions.copy()
     weights = mass @ np.ones(len(nodes))
     centred = np.where(weights[:, None] > 0, nodes, 0)
     centred = centred - weights @ centred
+    fixed = functions.copy()
     ends = np.append(np.flatnonzero(np.diff(values) > DEGENERATE * values[1:]) + 1, len(values))
     for first, end in zip(np.append(0, ends[:-1]), ends, strict=True):
-        waves = _waves(centred, end - first, np.sqrt(values[first]))
-        seen = functions[:, first:end].T @ (mass @ waves)
-        rotation, upper = np.linalg.qr(seen)
-        fixed[:, first:end] = functions[:, first:end] @ (rotation * _signs(np.diag(upper)))
-    return fixed * _signs(_third_moments(fixed, weights))
+        alone = _third_moment(functions[:, first], weights) if end - first == 1 else 0
+        if alone:
+            fixed[:, first] *= np.sign(alone)
+        else:
+            waves = mass @ _waves(centred, end - first, np.sqrt(values[first]))
+            fixed[:, first:end] = functions[:, first:end] @ _towards(functions[:, first:end].T @ waves)
+    return fixed
 
 
 def _waves(nodes: Floats, count: int, frequency: float) -> Floats:
@@ -49,12 +51,14 @@ def _waves(nodes: Floats, count: int, frequency: float) -> Floats:
     return np.cos(frequency * nodes @ directions + random.uniform(0, np.pi, count))
 
 
-def _third_moments(functions: Floats, weights: Floats) -> Floats:
-    """Return the integral of the cube of each function, 0 where it is as good as zero."""
-    cubes = functions**3
-    moments = weights @ cubes
-    return np.where(np.abs(moments) > SYMMETRIC * (weights @ np.abs(cubes)), moments, 0)
+def _towards(projections: Floats) -> Floats:
+    """Return the rotation whose columns lie along projections, each as far as those before leave it free."""
+    rotation, upper = np.linalg.qr(projections)
+    return rotation * np.where(np.diag(upper) < 0, -1.0, 1.0)
 
 
-def _signs(numbers: Floats) -> Floats:
-    return np.where(numbers < 0, -1.0, 1.0)
+def _third_moment(function: Floats, weights: Floats) -> float:
+    """Return the integral of the cube of a function, 0 where it is as good as zero."""
+    cube = function * function * function
+    moment = float(weights @ cube)
+    return moment if abs(moment) > SYMMETRIC * (weights @ np.abs(cube)) else 0.0

@@ -1,0 +1,29 @@
+"""What happens to meshes that are too large for cubic elements."""
+
+import numpy as np
+import pytest
+
+from compute.analysis import analyze
+from compute.fem.eigenbasis import solve_eigenbasis
+from compute.fem.order_choice import BYTES_PER_UNKNOWN, choose_order
+from tests.shapes import icosphere, star
+
+
+def test_the_order_falls_as_the_budget_does():
+    mesh = icosphere(2)
+    n_unknowns = [len(solve_eigenbasis(mesh, 3, order=order).nodes) for order in (3, 2)]
+    budgets = [n_unknowns[0] * BYTES_PER_UNKNOWN, n_unknowns[1] * BYTES_PER_UNKNOWN, 0]
+    choices = [choose_order(mesh, budget) for budget in budgets]
+    assert [choice.order for choice in choices] == [3, 2, 1]
+    assert [choice.warning is None for choice in choices] == [True, False, False]
+    assert choose_order(mesh, budgets[0] - 1).order == 2
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_parts_agree_with_those_of_cubic_elements_on_97_percent_of_the_area(order):
+    mesh = star(n_subdivisions=5)
+    cubic, other = (analyze(mesh, order=each).segment().labels for each in (3, order))
+    shared = np.zeros((cubic.max() + 1, other.max() + 1))
+    np.add.at(shared, (cubic, other), mesh.areas)
+    assert shared.max(axis=1).sum() >= 0.97 * mesh.areas.sum()
+    assert cubic.max() == other.max()
