@@ -20,7 +20,7 @@ def two_triangles_a_polygon(mesh):
 
 
 def test_parts_of_triangles_are_those_of_the_engine(analyzed, star):
-    labels = analyze(TriangleMesh(star.vertices.astype(np.float32), star.triangles)).segment().labels
+    labels = analyze(TriangleMesh(star.vertices.astype(np.float32), star.triangles)).segment(mode="nested").labels
     np.testing.assert_array_equal(values_of(analyzed.data, "part"), labels)
 
 
@@ -43,7 +43,7 @@ def test_polygons_get_the_part_of_most_of_their_area(star):
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles)
     engine = analyze(TriangleMesh(np.float32(vertices), triangles.reshape(-1, 3)))
-    of_triangle = engine.segment().labels
+    of_triangle = engine.segment(mode="nested").labels
     polygon = np.array([triangle.polygon_index for triangle in mesh.loop_triangles])
     labels = values_of(mesh, "part")
     agree = of_triangle == labels[polygon]
@@ -82,7 +82,7 @@ def test_a_sphere_is_one_part():
 
 def test_an_eigenfunction_divides_by_both_kinds_of_extrema(star_object, star):
     bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=3)
-    labels = analyze(TriangleMesh(star.vertices.astype(np.float32), star.triangles), field=3).segment().labels
+    labels = analyze(TriangleMesh(np.float32(star.vertices), star.triangles), field=3).segment(mode="nested").labels
     np.testing.assert_array_equal(values_of(star_object.data, "part"), labels)
     assert "eigenparts_branch_minima" in star_object.data.attributes
     assert len(set(labels)) > 2
@@ -93,9 +93,8 @@ def test_own_values_are_a_field_too(star_object, star):
     attribute = star_object.data.attributes.new("height", "FLOAT", "POINT")
     attribute.data.foreach_set("value", heights)
     bpy.ops.eigenparts.analyze(field="ATTRIBUTE", attribute="height")
-    labels = (
-        analyze(TriangleMesh(np.float32(star.vertices), star.triangles), field=heights.astype(float)).segment().labels
-    )
+    engine = analyze(TriangleMesh(np.float32(star.vertices), star.triangles), field=heights.astype(float))
+    labels = engine.segment(mode="nested").labels
     np.testing.assert_array_equal(values_of(star_object.data, "part"), labels)
 
 
@@ -105,7 +104,7 @@ def test_modifiers_can_pose_what_is_analyzed(star_object, star):
     bpy.ops.eigenparts.analyze(use_modifiers=True)
     posed = star_object.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
     vertices = values_of(posed, "position", 3, np.float32, "vector")
-    labels = analyze(TriangleMesh(vertices, star.triangles)).segment().labels
+    labels = analyze(TriangleMesh(vertices, star.triangles)).segment(mode="nested").labels
     np.testing.assert_array_equal(values_of(star_object.data, "part"), labels)
 
 
