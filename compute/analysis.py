@@ -10,18 +10,20 @@ from numpy.typing import ArrayLike
 from .errors import FieldError, LevelError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
 from .fields import DIFFUSION, DIFFUSION_FUNCTIONS, Net, ScalarField, diffusion_field, eigenfunction_field, user_field
-from .mesh import Ints, TriangleMesh
+from .mesh import Floats, Ints, TriangleMesh
 from .msc.diagram import PersistenceDiagram
-from .msc.links import Links, links_of
+from .msc.links import links_of
 from .msc.morse_smale import FieldTopology, MorseSmaleComplex
 from .msc.reeb import ReebGraph
 from .progress import Progress, rising, section, silent
 from .segmentation.arc_areas import arc_areas
+from .segmentation.borders import Polyline, closing_heights, cross_edges, part_of_border, trace_borders
 from .segmentation.branches import Branches, build_branches
 from .segmentation.faces import face_graph
 from .segmentation.hierarchy import Hierarchy, build_hierarchy
 from .segmentation.necks import measured
-from .segmentation.parts import Segmentation, label_branches
+from .segmentation.parts import Segmentation, cut_arcs, label_branches
+from .segmentation.profile import EdgeProfile, edge_profile
 from .segmentation.subparts import inserted
 from .segmentation.zero_level import divide_at_zero
 from .surface import Surface, clean_surface
@@ -63,7 +65,7 @@ class Analysis:
     hierarchy: Hierarchy
     warnings: tuple[str, ...]
     field_choice: str | int | ArrayLike
-    _links: Links
+    _topology: FieldTopology
     _arc_of_vertex: tuple[Ints, ...]
     _known_basis: Eigenbasis | None = dataclasses.field(repr=False)
 
@@ -87,7 +89,7 @@ class Analysis:
     @cached_property
     def complex(self) -> MorseSmaleComplex:
         """The critical points of the field with all that lies between them, each part made when first asked for."""
-        return MorseSmaleComplex(FieldTopology(self._links, self.net.positions, self.field.values))
+        return MorseSmaleComplex(self._topology)
 
     @property
     def diagram(self) -> PersistenceDiagram:
@@ -104,6 +106,11 @@ class Analysis:
         persistence = hierarchy.persistence[::-1]
         least = np.inf if level == 0 else persistence[level - 1]
         return self.complex.above(float(least))
+
+    @cached_property
+    def _ended_at_handles(self) -> "Analysis":
+        hierarchy, arcs = _hierarchy(self.field, self._topology, ends_at_handles=True)
+        return dataclasses.replace(self, hierarchy=hierarchy, _arc_of_vertex=arcs)
 
     def branches(self, face_of_triangle: Ints | None = None) -> tuple[Branches, ...]:
         """Return the faces of every arc, one table for each tree of the hierarchy.
@@ -130,6 +137,24 @@ class Analysis:
             shares.append(arc_areas(rising, arc, tree, self.net, face))
         return build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
 
+    def profile(self, edges: Ints | None = None) -> EdgeProfile:
+        """Return the field along edges (E, 2) of the input, those of its triangles if None."""
+        edges = self.mesh.edges.vertices if edges is None else edges
+        return edge_profile(self.surface, self.field, self._arc_of_vertex, edges)
+
+    @cached_property
+    def closing_heights(self) -> tuple[Floats, ...]:
+        """(A,) for each tree, the value of the field at which each arc closes; not a number for the root."""
+        return tuple(closing_heights(self.field.values, tree) for tree in self.hierarchy.trees)
+
+    def borders(self, level: int | None = None, mode: str = "features") -> tuple[Polyline, ...]:
+        """Return the lines where the parts of a level, the default one if None, end on the triangles of the input."""
+        hierarchy, branches = self.hierarchy, self.branches()
+        level = hierarchy.default_level if level is None else hierarchy.checked_level(level)
+        cuts = cut_arcs(hierarchy, branches, level, mode)
+        crossings = cross_edges(self.profile(), hierarchy.trees, self.closing_heights, cuts)
+        return trace_borders(self.mesh, crossings, part_of_border(cuts))
+
     def segment(
         self,
         *,
@@ -137,6 +162,7 @@ class Analysis:
         threshold: float | None = None,
         n_parts: int | None = None,
         mode: str = "features",
+        essential: bool = False,
         within: int | None = None,
     ) -> Segmentation:
         """Divide the mesh into parts.
@@ -151,6 +177,8 @@ class Analysis:
             How many labels, the body included.
         mode : "features" or "nested"
             Only the features, or also what lies between them when all levels up to this one are overlaid.
+        essential : bool
+            Whether parts end at essential saddles, too: where a handle begins, such as a leg that a tail touches.
         within : int, optional
             A part of this segmentation that is analyzed on its own and divided further.
 
@@ -168,6 +196,10 @@ class Analysis:
         ----------
         .. [1] Reuter, IJCV 2010, section 4.7, on the analysis of subparts.
         """
+        if essential:
+            return self._ended_at_handles.segment(
+                level=level, threshold=threshold, n_parts=n_parts, mode=mode, within=within
+            )
         branches = self.branches()
         labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
         of_faces = labels.of_faces(branches)
@@ -210,18 +242,27 @@ def analyze(
     surface = clean_surface(mesh)
     chosen = _field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
     progress(0.8, "Finding the features")
-    values, net = chosen.field.values, chosen.field.net
-    links = links_of(net.triangles, len(net.positions))
+    net = chosen.field.net
+    topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
     progress(0.9, "Ordering the features")
-    bare, arcs = build_hierarchy(
-        values, links, minima_are_features=chosen.field.minima_are_features, least_range=chosen.field.least_range
-    )
-    progress(0.95, "Measuring the necks")
-    trees = tuple(measured(tree, arc, chosen.field) for tree, arc in zip(bare.trees, arcs, strict=True))
-    hierarchy = dataclasses.replace(bare, trees=trees)
+    hierarchy, arcs = _hierarchy(chosen.field, topology, ends_at_handles=False)
     progress(1.0, "Done")
     warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
-    return Analysis(mesh, surface, chosen.field, hierarchy, warnings, field, links, arcs, chosen.basis)
+    return Analysis(mesh, surface, chosen.field, hierarchy, warnings, field, topology, arcs, chosen.basis)
+
+
+def _hierarchy(
+    scalar_field: ScalarField, topology: FieldTopology, *, ends_at_handles: bool
+) -> tuple[Hierarchy, tuple[Ints, ...]]:
+    """Return the hierarchy with its necks measured, and the arcs of the net's vertices."""
+    bare, arcs = build_hierarchy(
+        topology,
+        minima_are_features=scalar_field.minima_are_features,
+        least_range=scalar_field.least_range,
+        ends_at_handles=ends_at_handles,
+    )
+    trees = tuple(measured(tree, arc, scalar_field) for tree, arc in zip(bare.trees, arcs, strict=True))
+    return dataclasses.replace(bare, trees=trees), arcs
 
 
 def reeb_graph(analysis: Analysis, *, level: int | None = None) -> ReebGraph:

@@ -31,7 +31,7 @@ class ArcTree:
         Net vertex at which the arc closes; -1 for the root.
     closing : (A,) int64
         The level from which on that saddle survives, less one: the place of its pair by falling persistence, the
-        first of them if it has several. The root has a number that no level reaches.
+        first of them if it has several, -1 where it survives always. The root has a number that no level reaches.
     n_roots : int
         Parts with the numbers 1 to this have no pair and survive always; the next numbers follow the pairs.
     n_features : int

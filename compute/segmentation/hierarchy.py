@@ -6,9 +6,8 @@ import numpy as np
 
 from ..errors import LevelError
 from ..mesh import Bools, Floats, Ints
-from ..msc.critical_points import rank_vertices
-from ..msc.links import Links
-from ..msc.merge_tree import MergeTree, merge_tree
+from ..msc.merge_tree import MergeTree
+from ..msc.morse_smale import FieldTopology
 from .arc_tree import ArcTree, Features, arc_of_vertex, build_arc_tree
 
 # Pairs below this fraction of the field's range are noise of the triangulation (Reuter 2009, section 4.3).
@@ -76,20 +75,20 @@ class _Sweep:
 
 
 def build_hierarchy(
-    values: Floats, links: Links, *, minima_are_features: bool, least_range: float = 0.0
+    topology: FieldTopology, *, minima_are_features: bool, least_range: float = 0.0, ends_at_handles: bool = False
 ) -> tuple[Hierarchy, tuple[Ints, ...]]:
     """Order the features of a field, and place the net on the trees of its levels.
 
     Parameters
     ----------
-    values : (n,) float64
-        The field on the vertices of the net.
-    links : Links
-        Of the net.
+    topology : FieldTopology
+        The field on its net of n vertices.
     minima_are_features : bool
         Whether minima are parts as well as maxima.
     least_range : float
         A field with a smaller range than this has no features.
+    ends_at_handles : bool
+        Whether parts end at essential saddles, too, where a handle closes; they survive at every level.
 
     Returns
     -------
@@ -97,16 +96,13 @@ def build_hierarchy(
     arcs : tuple of (n,) int64
         For each tree, the arc that each vertex of the net lies on.
     """
-    rank = rank_vertices(values)
-    # The same order read downwards, so that ties are broken alike for maxima and minima.
-    sweeps = [_Sweep(merge_tree(len(values) - 1 - rank, links), True)]
-    if minima_are_features:
-        sweeps.append(_Sweep(merge_tree(rank, links), False))
-    value_range = float(np.ptp(values[links.vertex]))
-    pairs, persistence, is_maximum = _pairs_by_persistence(values, sweeps)
+    sweeps = [_Sweep(topology.maxima, True)] + ([_Sweep(topology.minima, False)] if minima_are_features else [])
+    value_range = float(np.ptp(topology.values[topology.links.vertex]))
+    pairs, persistence, is_maximum = _pairs_by_persistence(topology.values, sweeps)
     noise = max(NOISE_THRESHOLD * value_range, np.inf if value_range < least_range else 0.0)
     n_features = int((persistence > noise).sum())
-    trees, arcs = _grow_trees(sweeps, pairs[::-1][:n_features])
+    always = np.unique(topology.essential.loops) if ends_at_handles else np.zeros(0, dtype=np.int64)
+    trees, arcs = _grow_trees(sweeps, pairs[::-1][:n_features], always)
     return Hierarchy(pairs, persistence, is_maximum, value_range, n_features + 1, trees), arcs
 
 
@@ -118,12 +114,16 @@ def _pairs_by_persistence(values: Floats, sweeps: list[_Sweep]) -> tuple[Ints, F
     return pairs[order], persistence[order], is_maximum[order]
 
 
-def _grow_trees(sweeps: list[_Sweep], features: Ints) -> tuple[tuple[ArcTree, ...], tuple[Ints, ...]]:
-    """Build the arc tree of each sweep; ``features`` are the pairs above the noise, by falling persistence."""
+def _grow_trees(sweeps: list[_Sweep], features: Ints, always: Ints) -> tuple[tuple[ArcTree, ...], tuple[Ints, ...]]:
+    """Build the arc tree of each sweep.
+
+    ``features`` are the pairs above the noise by falling persistence, ``always`` the saddles that survive at any level.
+    """
     roots = [extremum for sweep in sweeps for extremum in sweep.tree.roots.tolist()]
     part = {extremum: number for number, extremum in enumerate([*roots, *features[:, 0].tolist()], start=1)}
     # Where pairs share a saddle, the most persistent one keeps it alive.
     closing_of_saddle = {saddle: place for place, saddle in reversed(list(enumerate(features[:, 1].tolist())))}
+    closing_of_saddle |= dict.fromkeys(always.tolist(), -1)
     trees, arcs = [], []
     for sweep in sweeps:
         tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, Features(part, closing_of_saddle, len(roots)))

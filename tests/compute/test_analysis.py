@@ -170,3 +170,13 @@ def test_refuses_less_than_one_part(analysis, n_parts):
 def test_refuses_an_unknown_order():
     with pytest.raises(FieldError, match='"auto"'):
         analyze(star(), order="cubic")
+
+
+def test_parts_end_where_a_handle_begins_if_asked_to():
+    """A torus standing on its side has one maximum, nothing to cut; its two essential saddles cut off top and bottom."""
+    mesh = torus()
+    analysis = analyze(mesh, field=mesh.vertices[:, 0])
+    assert analysis.segment().n_parts == 1
+    ended = analysis.segment(essential=True)
+    assert ended.n_parts == 3
+    assert set(ended.parts.saddle[1:]) == set(analysis.complex.essential.loops.ravel())

@@ -59,7 +59,7 @@ def parts_of_maxima(net, surviving_maxima, surviving_saddles):
     return parts
 
 
-def parts_of_level(triangles, values, level, minima_are_features):
+def parts_of_level(triangles, values, level, minima_are_features, essential=frozenset()):
     """Return {(is_maximum, extremum): vertices} of a level, from the definitions alone."""
     rank = np.empty(len(values), dtype=int)
     rank[np.argsort(values, kind="stable")] = np.arange(len(values))
@@ -77,6 +77,6 @@ def parts_of_level(triangles, values, level, minima_are_features):
     for is_maximum, net in nets.items():
         top = max(net.vertices, key=lambda v: net.rank[v])
         maxima = [top] + [e for _, kind, e, _ in kept if kind == is_maximum]
-        found = parts_of_maxima(net, maxima, {s for *_, s in kept})
+        found = parts_of_maxima(net, maxima, {s for *_, s in kept} | essential)
         parts |= {(is_maximum, e): vertices for e, vertices in found.items()}
     return parts
