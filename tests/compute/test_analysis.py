@@ -173,7 +173,7 @@ def test_refuses_an_unknown_order():
 
 
 def test_parts_end_where_a_handle_begins_if_asked_to():
-    """A torus standing on its side has one maximum, nothing to cut; its two essential saddles cut off top and bottom."""
+    """A standing torus has one maximum and nothing to cut; its two essential saddles cut off top and bottom."""
     mesh = torus()
     analysis = analyze(mesh, field=mesh.vertices[:, 0])
     assert analysis.segment().n_parts == 1
