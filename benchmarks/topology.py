@@ -20,8 +20,9 @@ from compute import TriangleMesh
 from compute.fem.lagrange import reference_element
 from compute.fem.space import function_space
 from compute.mesh import Floats
-from compute.msc.critical_points import critical_points, rank_vertices
 from compute.msc.links import links_of
+from compute.msc.morse_smale import FieldTopology
+from compute.msc.morse_smale import FieldTopology
 from compute.segmentation.hierarchy import build_hierarchy
 from examples import humanoid
 
@@ -84,8 +85,9 @@ def _row(mesh: TriangleMesh, name: str, values: Floats) -> str:
 def _ours(mesh: TriangleMesh, values: Floats) -> tuple[list[float], int]:
     links = links_of(mesh.triangles, len(mesh.vertices))
     making, _ = _seconds(lambda: links.is_plain)
-    finding, points = _seconds(lambda: critical_points(values, rank_vertices(values), links))
-    pairing, _ = _seconds(lambda: build_hierarchy(values, links, minima_are_features=True))
+    topology = FieldTopology(links, mesh.vertices, values)
+    finding, points = _seconds(lambda: topology.critical_points)
+    pairing, _ = _seconds(lambda: build_hierarchy(topology, minima_are_features=True))
     return [making, finding, pairing], len(points.vertex)
 
 

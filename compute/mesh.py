@@ -14,6 +14,7 @@ from .errors import MeshError
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+Ints32 = NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,23 +107,40 @@ class TriangleMesh:
 
 def edges_of(triangles: Ints, n_vertices: int) -> Edges:
     """Return the edges of triangles over ``n_vertices`` vertices."""
-    heads = np.roll(triangles, -1, axis=1)
-    low, high = np.minimum(triangles, heads).ravel(), np.maximum(triangles, heads).ravel()
-    order = _counting_order(high, n_vertices)
-    order = order[_counting_order(low[order], n_vertices)]
-    low, high = low[order], high[order]
-    is_new = np.append(True, (low[1:] != low[:-1]) | (high[1:] != high[:-1]))
+    order, ends, is_new = sorted_sides(triangles, n_vertices)
     first = np.flatnonzero(is_new)
     edge = np.empty(len(order), dtype=np.int64)
     edge[order] = np.cumsum(is_new) - 1
-    ends = np.stack([low[first], high[first]], axis=1)
-    return Edges(ends, edge.reshape(-1, 3), np.diff(np.append(first, len(order))))
+    return Edges(ends[:, first].T.astype(np.int64), edge.reshape(-1, 3), np.diff(np.append(first, len(order))))
 
 
-def _counting_order(keys: Ints, n_keys: int) -> NDArray[np.int32]:
+def sorted_sides(triangles: Ints, n_vertices: int) -> tuple[Ints32, Ints32, Bools]:
+    """Sort the sides of all triangles by their lower, then by their higher end, so that an edge is a run of sides.
+
+    Returns
+    -------
+    order : (3 T,) int32
+        Side 3 t + k joins the corners k and k + 1 of triangle t.
+    ends : (2, 3 T) int32
+        Lower and higher end of the sides in that order.
+    is_new : (3 T,) bool
+        Where an edge begins.
+    """
+    tails = triangles.astype(np.int32)
+    heads = np.roll(tails, -1, axis=1)
+    low, high = np.minimum(tails, heads).ravel(), np.maximum(tails, heads).ravel()
+    order = _counting_order(high, n_vertices)
+    order = order[_counting_order(low[order], n_vertices)]
+    low, high = low[order], high[order]
+    is_new = np.ones(len(order), dtype=bool)
+    is_new[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
+    return order, np.stack([low, high]), is_new
+
+
+def _counting_order(keys: Ints32, n_keys: int) -> Ints32:
     """Return the stable order of keys below ``n_keys``; a sparse transposition is a counting sort, so linear."""
     rows = np.arange(len(keys) + 1, dtype=np.int32)
-    one_a_row = csr_array((np.empty(len(keys), dtype=np.int8), keys.astype(np.int32), rows), shape=(len(keys), n_keys))
+    one_a_row = csr_array((np.empty(len(keys), dtype=np.int8), keys, rows), shape=(len(keys), n_keys))
     return one_a_row.tocsc().indices
 
 

@@ -71,8 +71,13 @@ class Sectors:
 
 def rank_vertices(values: Floats) -> Ints:
     """Return the place of each vertex in rising order; equal values are ordered by index."""
+    order = np.argsort(values)
+    rising = values[order]
+    # A stable sort takes several times as long, and is needed for equal values only.
+    if (rising[1:] == rising[:-1]).any():
+        order = np.argsort(values, kind="stable")
     rank = np.empty(len(values), dtype=np.int64)
-    rank[np.argsort(values, kind="stable")] = np.arange(len(values))
+    rank[order] = np.arange(len(values))
     return rank
 
 
@@ -91,7 +96,7 @@ def ranked_corners(rank: Ints, links: Links) -> tuple[Ints, Ints, Ints]:
     return np.minimum(low, middle), np.maximum(low, middle), np.maximum(high, third)
 
 
-def critical_points(values: Floats, rank: Ints, links: Links) -> CriticalPoints:
+def critical_points(values: Floats, rank: Ints, links: Links, candidates: Ints | None = None) -> CriticalPoints:
     """Classify every vertex of the net.
 
     Parameters
@@ -100,12 +105,14 @@ def critical_points(values: Floats, rank: Ints, links: Links) -> CriticalPoints:
     rank : (n,) int64
         Strict order of the vertices, from :func:`rank_vertices`.
     links : Links
+    candidates : (c,) int64, optional
+        The vertices that are perhaps critical, if they are known.
 
     References
     ----------
     .. [1] Reuter, IJCV 2010, section 4.2; the index on complexes that are no closed manifolds is the method page's.
     """
-    candidates = _candidates(rank, links)
+    candidates = perhaps_critical(rank, links) if candidates is None else candidates
     nodes, n_link_edges = _lower_link(candidates, rank, links)
     n_nodes = np.bincount(nodes.vertex, minlength=links.n_vertices)[candidates]
     n_components = np.bincount(nodes.vertex[nodes.is_first], minlength=links.n_vertices)[candidates]
@@ -116,9 +123,20 @@ def critical_points(values: Floats, rank: Ints, links: Links) -> CriticalPoints:
     return CriticalPoints(vertex, kind, multiplicity[row, kind], values[vertex])
 
 
-def merging_sectors(rank: Ints, links: Links) -> Sectors:
-    """Return the lower-link components of all vertices that have two or more, in the order of a rising sweep."""
-    nodes, _ = _lower_link(_candidates(rank, links), rank, links)
+def perhaps_critical(rank: Ints, links: Links) -> Ints:
+    """Return the vertices that are perhaps critical: all but those whose closed link changes side just twice.
+
+    They are the same for both directions of the sweep.
+    """
+    _, middle, _ = ranked_corners(rank, links)
+    # A link edge changes side where its triangle has the vertex as its middle corner.
+    n_changes = np.bincount(middle, minlength=links.n_vertices)[rank]
+    return np.flatnonzero(((n_changes != 2) | ~links.is_plain) & (links.n_triangles > 0))
+
+
+def merging_sectors(rank: Ints, links: Links, candidates: Ints) -> Sectors:
+    """Return the lower-link components of those vertices that have two or more, in the order of a rising sweep."""
+    nodes, _ = _lower_link(candidates, rank, links)
     vertex, lowest = nodes.vertex[nodes.is_first], nodes.neighbour[nodes.is_first]
     merges = np.bincount(vertex, minlength=links.n_vertices)[vertex] > 1
     order = np.argsort(rank[vertex[merges]], kind="stable")
@@ -139,14 +157,6 @@ class _LinkNodes:
     neighbour: Ints
     component: Ints
     is_first: Bools
-
-
-def _candidates(rank: Ints, links: Links) -> Ints:
-    """Return the vertices that are perhaps critical: all but those whose closed link changes side just twice."""
-    _, middle, _ = ranked_corners(rank, links)
-    # A link edge changes side where its triangle has the vertex as its middle corner.
-    n_changes = np.bincount(middle, minlength=links.n_vertices)[rank]
-    return np.flatnonzero(((n_changes != 2) | ~links.is_plain) & (links.n_triangles > 0))
 
 
 def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, Ints]:

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..mesh import Bools, Edges, Ints, edges_of
+from ..mesh import Bools, Edges, Ints, edges_of, sorted_sides
 
 # Vertices in more triangles than this are not walked around but count as not plain, which is slower and as exact.
 LONGEST_WALK = 64
@@ -46,10 +46,13 @@ class Links:
 
         It is -1 where the edge has not exactly two triangles.
         """
-        edge = self.edges.of_triangle.ravel()
-        side = np.arange(len(edge))
-        both = np.bincount(edge, side, len(self.edges.n_triangles)).astype(np.int64)
-        return np.where(self.edges.n_triangles[edge] == 2, both[edge] - side, -1)
+        order, _, is_new = sorted_sides(self.triangles, self.n_vertices)
+        first = np.flatnonzero(is_new)
+        pairs = first[np.diff(np.append(first, len(order))) == 2]
+        opposite = np.full(len(order), -1)
+        opposite[order[pairs]] = order[pairs + 1]
+        opposite[order[pairs + 1]] = order[pairs]
+        return opposite
 
     @cached_property
     def turn(self) -> Ints:

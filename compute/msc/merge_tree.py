@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..mesh import Ints
-from .critical_points import Sectors, merging_sectors, ranked_corners, vertices_by_rank
+from .critical_points import Sectors, merging_sectors, perhaps_critical, ranked_corners, vertices_by_rank
 from .links import Links
 
 
@@ -43,14 +43,23 @@ class MergeTree:
     sectors: Sectors
 
 
-def merge_tree(rank: Ints, links: Links) -> MergeTree:
-    """Sweep the net upwards and pair each minimum with the saddle that ends it (0-dimensional persistence)."""
+def merge_tree(rank: Ints, links: Links, candidates: Ints | None = None) -> MergeTree:
+    """Sweep the net upwards and pair each minimum with the saddle that ends it (0-dimensional persistence).
+
+    Parameters
+    ----------
+    rank : (n,) int64
+    links : Links
+    candidates : (c,) int64, optional
+        The vertices that are perhaps critical, if they are known.
+    """
     descent = _descent(rank, links)
     basin = ends_of_paths(descent)
-    sectors = merging_sectors(rank, links)
+    sectors = merging_sectors(rank, links, perhaps_critical(rank, links) if candidates is None else candidates)
     extremum, saddle, elder = _elder_rule(rank, sectors, basin)
     minima = links.vertex[basin[links.vertex] == links.vertex]
-    return MergeTree(rank, descent, basin, extremum, saddle, elder, np.setdiff1d(minima, extremum), sectors)
+    roots = minima[~np.isin(minima, extremum)]
+    return MergeTree(rank, descent, basin, extremum, saddle, elder, roots, sectors)
 
 
 def _descent(rank: Ints, links: Links) -> Ints:

@@ -9,7 +9,7 @@ from ..mesh import Floats, Ints
 from .cancellation import extended_lines
 from .cells import Cells, cells_of
 from .cohomology import cocycles_of
-from .critical_points import CriticalPoints, Kind, critical_points, rank_vertices
+from .critical_points import CriticalPoints, Kind, critical_points, perhaps_critical, rank_vertices
 from .diagram import PersistenceDiagram, persistence_diagram
 from .level_sets import level_set
 from .links import Links
@@ -44,12 +44,16 @@ class FieldTopology:
     @cached_property
     def minima(self) -> MergeTree:
         """The components of the sublevel sets."""
-        return merge_tree(self.rank, self.links)
+        return merge_tree(self.rank, self.links, self._candidates)
 
     @cached_property
     def maxima(self) -> MergeTree:
         """The components of the superlevel sets; the same order read downwards, so that ties are broken alike."""
-        return merge_tree(len(self.rank) - 1 - self.rank, self.links)
+        return merge_tree(len(self.rank) - 1 - self.rank, self.links, self._candidates)
+
+    @cached_property
+    def _candidates(self) -> Ints:
+        return perhaps_critical(self.rank, self.links)
 
     @cached_property
     def essential(self) -> EssentialClasses:
@@ -64,7 +68,7 @@ class FieldTopology:
     @cached_property
     def critical_points(self) -> CriticalPoints:
         """Net vertex, kind, multiplicity and value of each critical point."""
-        return critical_points(self.values, self.rank, self.links)
+        return critical_points(self.values, self.rank, self.links, self._candidates)
 
     @cached_property
     def separatrices(self) -> Separatrices:
