@@ -90,7 +90,7 @@ def smallest_eigenpairs(
             functions = krylov.rows[: krylov.size].T @ coefficients
             if _error(pencil, values, functions) <= tolerance:
                 return values, functions
-            promised /= 10
+            promised /= 3
     raise SpectrumError("The eigenfunctions did not converge; look for slivers, or remesh the surface.")
 
 

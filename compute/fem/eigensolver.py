@@ -30,8 +30,10 @@ DENSE_SHARE = 1 / 5
 
 # Functions that are iterated at a time; more where symmetry makes eigenvalues multiple, which linear elements show.
 LEAST_WIDTH = 4
-MOST_MULTIPLE = 12
 SAME_VALUE = 1e-3
+
+# Linear functions beyond those wanted that are mixed into the start.
+N_EXTRA = 6
 
 # Eigenvalues of linear elements are too large; up to this much when they decide how many functions are needed.
 LINEAR_EXCESS = 1.1
@@ -117,15 +119,16 @@ def lowest_eigenpairs(
     """
     if problem.space.element.order == 1 or problem.is_free.sum() < BLOCK_UNKNOWNS:
         return _plain_eigenpairs(problem, n_pairs, 0.0, progress)
-    n_linear = n_pairs + MOST_MULTIPLE
+    n_linear = n_pairs + N_EXTRA
     if n_linear > DENSE_SHARE * problem.linear.is_free.sum():
         return _plain_eigenpairs(problem, n_pairs, 0.0, progress)
     values, functions = _plain_eigenpairs(problem.linear, n_linear, START_TOLERANCE, section(progress, 0.0, 0.15))
     # One function more than needed shows that none is missing.
     n_needed = int((values <= LINEAR_EXCESS * largest_ratio * values[n_constant]).sum()) + 1
     n_pairs = min(n_pairs, n_needed)
-    width = max(LEAST_WIDTH, _multiplicity(values[: n_pairs + MOST_MULTIPLE]) + 1)
-    start = functions[:, : n_pairs + width] @ _mixture(n_pairs + width, width)
+    close = slice(n_pairs + N_EXTRA)
+    width = max(LEAST_WIDTH, _multiplicity(values[close]) + 1)
+    start = functions[:, close] @ _mixture(functions[:, close].shape[1], width)
     return _block_eigenpairs(problem, start, n_pairs, section(progress, 0.15, 1.0))
 
 

@@ -16,10 +16,15 @@ def bisect_triangles(mesh: TriangleMesh) -> Ints:
     """
     centres = mesh.vertices[mesh.triangles].mean(axis=1)
     pairs = mesh.edges.neighbours
+    n_levels = _n_levels(len(centres))
+    # Parts of equal size, so that they are the rows of one array; a few triangles stand in it twice.
+    size = -(-len(centres) // (1 << n_levels)) << n_levels
+    parts = np.resize(np.arange(len(centres)), (1, size))
     code = np.zeros(len(centres), dtype=np.int64)
-    for depth in range(_n_levels(len(centres))):
+    for _ in range(n_levels):
         pairs = pairs[code[pairs[:, 0]] == code[pairs[:, 1]]]
-        code = 2 * code + _halve(centres, code, pairs, n_parts=1 << depth)
+        parts = _halved(parts, centres, code, pairs)
+        code[parts] = np.arange(len(parts))[:, None]
     return code
 
 
@@ -52,38 +57,29 @@ def _n_levels(n_triangles: int) -> int:
     return max(0, int(np.ceil(np.log2(n_triangles / LEAF_TRIANGLES))))
 
 
-def _halve(centres: Floats, part: Ints, pairs: Ints, n_parts: int) -> Ints:
-    """Return 0 or 1 for each triangle: its side of the cheapest median cut of its part."""
+def _halved(parts: Ints, centres: Floats, code: Ints, pairs: Ints) -> Ints:
+    """Return (2 n, m / 2) triangles of the halves of (n, m) parts, cut where it costs the fewest edges."""
+    n_parts, size = parts.shape
+    places = centres[parts]
     fewest = np.full(n_parts, np.iinfo(np.int64).max)
-    best = np.zeros(len(part), dtype=np.int64)
-    for direction in _cut_directions(centres, part, n_parts):
-        side = _median_side(np.einsum("ij,ij->i", centres, direction[part]), part, n_parts)
-        is_cut = side[pairs[:, 0]] != side[pairs[:, 1]]
-        n_cut = np.bincount(part[pairs[is_cut, 0]], minlength=n_parts)
-        best = np.where((n_cut < fewest)[part], side, best)
+    best = np.zeros(parts.shape, dtype=np.int64)
+    for direction in _cut_directions(places):
+        by_place = np.argpartition(np.einsum("pmi,pi->pm", places, direction), size // 2, axis=1)
+        is_upper = np.zeros(len(centres), dtype=bool)
+        is_upper[np.take_along_axis(parts, by_place[:, size // 2 :], axis=1)] = True
+        is_cut = is_upper[pairs[:, 0]] != is_upper[pairs[:, 1]]
+        n_cut = np.bincount(code[pairs[is_cut, 0]], minlength=n_parts)
+        best = np.where((n_cut < fewest)[:, None], by_place, best)
         fewest = np.minimum(fewest, n_cut)
-    return best
+    return np.take_along_axis(parts, best, axis=1).reshape(2 * n_parts, size // 2)
 
 
-def _cut_directions(centres: Floats, part: Ints, n_parts: int) -> tuple[Floats, ...]:
-    """Return five (n_parts, 3) directions: the principal axes, longest first, and the diagonals of the first two."""
-    count = np.bincount(part, minlength=n_parts)
-    mean = np.stack([np.bincount(part, axis, n_parts) for axis in centres.T], axis=1) / count[:, None]
-    offset = centres - mean[part]
-    products = np.einsum("ij,ik->ijk", offset, offset).reshape(-1, 9)
-    covariance = np.stack([np.bincount(part, column, n_parts) for column in products.T], axis=1)
-    axes = np.linalg.eigh(covariance.reshape(-1, 3, 3))[1]
+def _cut_directions(places: Floats) -> tuple[Floats, ...]:
+    """Return five (n, 3) directions: the principal axes, longest first, and the diagonals of the first two."""
+    offset = places - places.mean(axis=1, keepdims=True)
+    axes = np.linalg.eigh(offset.swapaxes(1, 2) @ offset)[1]
     short, middle, long = (axes[:, :, k] for k in range(3))
     return long, middle, short, long + middle, long - middle
-
-
-def _median_side(coordinate: Floats, part: Ints, n_parts: int) -> Ints:
-    """Return 1 for the upper half of each part along a coordinate, else 0; ties go by index."""
-    by_part = np.lexsort((coordinate, part))
-    count = np.bincount(part, minlength=n_parts)
-    rank = np.empty(len(part), dtype=np.int64)
-    rank[by_part] = np.arange(len(part)) - (np.cumsum(count) - count)[part[by_part]]
-    return (rank >= count[part] // 2).astype(np.int64)
 
 
 def _bit_length(numbers: Ints) -> Ints:
