@@ -8,6 +8,9 @@ import bpy
 from . import engine
 
 
+IN_EDIT_MODE = "Leave edit mode first; results are written to the mesh as a whole."
+
+
 class Refusal(Exception):  # noqa: N818 - nothing is broken: the user can mend it
     """Something cannot be done as things are; the text says what the user can do."""
 
@@ -35,7 +38,7 @@ def _objection(obj: bpy.types.Object | None) -> str:
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first."
     if obj.mode == "EDIT":
-        return "Leave edit mode first; results are written to the mesh as a whole."
+        return IN_EDIT_MODE
     if obj.data.library is not None:
         return "The mesh is linked from another file; make it local first."
     return ""
