@@ -77,9 +77,9 @@ def _report_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[s
 
 def _divide_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[str, Any]:
     mesh = obj.data
-    exchange.refuse_foreign(mesh, (*results.RESULTS, *state.BRANCHES))
+    results.refuse_foreign_results(mesh)
     outcome = analyze_arrays(exchange.read_mesh(mesh), _engine_options(mesh, options.field), silent)
-    state.store(mesh, outcome.stored, outcome.description)
+    state.store(mesh, outcome.stored, outcome.source, outcome.description)
     choice = {name: getattr(options, name) for name in ("level", "threshold", "n_parts")}
     given = {name: value for name, value in choice.items() if value is not None}
     labels = results.segment_mesh(mesh, mode="features", **given)

@@ -4,5 +4,15 @@ import bpy
 
 register, unregister = bpy.utils.register_submodule_factory(
     __package__,
-    ["properties", "analyze", "segment", "select_part", "cancel", "clear", "plot_diagram", "trace_complex"],
+    [
+        "properties",
+        "analyze",
+        "segment",
+        "select_part",
+        "cancel",
+        "clear",
+        "plot_diagram",
+        "trace_complex",
+        "write_outputs",
+    ],
 )

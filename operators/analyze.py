@@ -28,6 +28,7 @@ class Outcome:
     """What an analysis leaves for the mesh."""
 
     stored: state.StoredAnalysis
+    source: state.BorderSource
     description: str
     warnings: tuple[str, ...]
     seconds: float
@@ -56,7 +57,7 @@ class EIGENPARTS_OT_analyze(AnalysisOptions, BackgroundOperator, bpy.types.Opera
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Outcome], Ticket]:
         mesh = context.object.data
-        exchange.refuse_foreign(mesh, (*results.RESULTS, *state.BRANCHES))
+        results.refuse_foreign_results(mesh)
         if self.use_modifiers:
             arrays = exchange.read_evaluated_mesh(context.object, context.evaluated_depsgraph_get())
         else:
@@ -66,7 +67,7 @@ class EIGENPARTS_OT_analyze(AnalysisOptions, BackgroundOperator, bpy.types.Opera
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = _find_mesh(ticket)
-        state.store(mesh, outcome.stored, outcome.description)
+        state.store(mesh, outcome.stored, outcome.source, outcome.description)
         labels = results.segment_mesh(mesh)
         show_vertex_colours(context)
         for warning in (*outcome.warnings, *labels.warnings):
@@ -100,7 +101,9 @@ def analyze_arrays(
     mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
     analysis = engine.analyze(mesh, **options, progress=progress)
     stored = state.StoredAnalysis(analysis.hierarchy, analysis.branches(arrays.polygon_of_triangle))
-    return Outcome(stored, _described(options), analysis.warnings, time.perf_counter() - start)
+    heights = engine.vertex_heights(analysis.surface, analysis.field)
+    source = state.BorderSource(analysis.profile(arrays.edges), heights, analysis.closing_heights)
+    return Outcome(stored, source, _described(options), analysis.warnings, time.perf_counter() - start)
 
 
 def _described(options: dict[str, Any]) -> str:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import exchange, results, state
+from . import exchange, outputs, state
 from .refusals import can_use_active_mesh
 from .viewport import restore_colour_types
 
@@ -20,8 +20,9 @@ class EIGENPARTS_OT_clear(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.object.data
+        outputs.remove(mesh)
         exchange.remove_own_attributes(mesh, exchange.own_names(mesh))
-        results.forget_colours(mesh)
+        mesh.property_unset("eigenparts")
         state.forget(mesh)
         if not any(state.is_analyzed(other) for other in bpy.data.meshes):
             restore_colour_types(context)

@@ -9,7 +9,7 @@ from hashlib import blake2b
 import bpy
 import numpy as np
 
-from .refusals import Refusal
+from .refusals import IN_EDIT_MODE, Refusal
 
 # Names of the attributes that are ours, one a line.
 OWN_ATTRIBUTES = "eigenparts_attributes"
@@ -17,18 +17,20 @@ OWN_ATTRIBUTES = "eigenparts_attributes"
 
 @dataclass(frozen=True, eq=False)
 class MeshArrays:
-    """The surface of a Blender mesh; V vertices, T triangles.
+    """The surface of a Blender mesh; V vertices, T triangles, E edges.
 
     Attributes
     ----------
     vertices : (V, 3) float64
     triangles : (T, 3) int64
     polygon_of_triangle : (T,) int64
+    edges : (E, 2) int64
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     polygon_of_triangle: np.ndarray
+    edges: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,15 @@ def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
         vertices.reshape(-1, 3).astype(np.float64),
         triangles.reshape(-1, 3).astype(np.int64),
         polygon_of_triangle(mesh).astype(np.int64),
+        read_edges(mesh),
     )
+
+
+def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (E, 2) vertices of each edge."""
+    edges = np.empty(2 * len(mesh.edges), dtype=np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    return edges.reshape(-1, 2).astype(np.int64)
 
 
 def read_evaluated_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshArrays:
@@ -99,7 +109,9 @@ def vertex_of_corner(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def fingerprint(mesh: bpy.types.Mesh) -> str:
-    """Return a text that changes whenever a vertex or a face of the mesh does."""
+    """Return a text that changes whenever a vertex or a face of the mesh does; not to be had in edit mode."""
+    if mesh.is_editmode:
+        raise Refusal(IN_EDIT_MODE)
     digest = blake2b(_faces_digest(mesh), digest_size=16)
     positions = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     if len(positions):
@@ -133,10 +145,19 @@ def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: np.ndarray)
 
 def read_own_integers(mesh: bpy.types.Mesh, own: OwnAttribute) -> np.ndarray:
     """Return the (n,) int32 values of an attribute of ours."""
+    return _read_own(mesh, own, np.int32, 1)
+
+
+def read_own_floats(mesh: bpy.types.Mesh, own: OwnAttribute, n_components: int = 1) -> np.ndarray:
+    """Return the (n * n_components,) float32 values of an attribute of ours."""
+    return _read_own(mesh, own, np.float32, n_components)
+
+
+def _read_own(mesh: bpy.types.Mesh, own: OwnAttribute, dtype: type, n_components: int) -> np.ndarray:
     attribute = mesh.attributes.get(own.name)
     if attribute is None or not own.is_kind_of(attribute):
         raise Refusal(f'The attribute "{own.name}" of the analysis is gone; analyze the mesh again.')
-    values = np.empty(len(attribute.data), dtype=np.int32)
+    values = np.empty(n_components * len(attribute.data), dtype=dtype)
     attribute.data.foreach_get(own.property_name, values)
     return values
 

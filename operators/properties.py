@@ -1,12 +1,24 @@
 """The settings the user sees: how to analyze, which level to show, and how far a job is."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
-from . import engine, results, state
+from . import engine, outputs, part_table, results, state
 from .refusals import Refusal
+from .select_part import select_faces_of
 
 # In the order of state.MODES.
 MODE_ITEMS = [
@@ -82,6 +94,71 @@ def _set_mode(settings: "EigenpartsMeshSettings", mode: int) -> None:
     _segment(settings.id_data, mode=state.MODES[mode], level=_level(settings))
 
 
+def _name(row: "EigenpartsPartRow") -> str:
+    return part_table.name_of(row.id_data, row.part)
+
+
+def _set_name(row: "EigenpartsPartRow", name: str) -> None:
+    part_table.rename(row.id_data, row.part, name)
+    _told(row.id_data, results.write_outputs)
+
+
+def _colour(row: "EigenpartsPartRow") -> tuple[float, ...]:
+    return tuple(part_table.colours(row.id_data, row.part + 1)[row.part, :3])
+
+
+def _set_colour(row: "EigenpartsPartRow", colour: tuple[float, float, float]) -> None:
+    part_table.set_colour(row.id_data, row.part, tuple(colour))
+    _told(row.id_data, results.write_outputs)
+
+
+class EigenpartsPartRow(bpy.types.PropertyGroup):
+    """A part in the list of the panel."""
+
+    part: IntProperty(name="Number", description="Label of the part; 0 is the body")
+    depth: IntProperty(name="Depth", description="How many parts it is a part of")
+    share: FloatProperty(name="Area", description="Fraction of the whole area", subtype="FACTOR")
+    n_faces: IntProperty(name="Faces")
+    title: StringProperty(name="Name", description="Name of the part; empty: as it was first", get=_name, set=_set_name)
+    color: FloatVectorProperty(
+        name="Color",
+        description="Color of the part",
+        subtype="COLOR",
+        size=3,
+        min=0,
+        max=1,
+        get=_colour,
+        set=_set_colour,
+    )
+
+
+def _tick_box(output: str) -> Any:
+    """Return a property that writes an output when it is ticked, and takes it back."""
+    name, description, _ = outputs.OUTPUTS[output]
+
+    def is_chosen(settings: "EigenpartsMeshSettings") -> bool:
+        return output in outputs.chosen(settings.id_data)
+
+    def choose(settings: "EigenpartsMeshSettings", wanted: bool) -> None:
+        others = set(outputs.chosen(settings.id_data)) - {output}
+        _told(settings.id_data, results.write_outputs, others | ({output} if wanted else set()))
+
+    return BoolProperty(name=name, description=description, get=is_chosen, set=choose)
+
+
+def _softness(settings: "EigenpartsMeshSettings") -> float:
+    return outputs.softness(settings.id_data)
+
+
+def _set_softness(settings: "EigenpartsMeshSettings", width: float) -> None:
+    _told(settings.id_data, results.write_outputs, None, width)
+
+
+def _select_row(settings: "EigenpartsMeshSettings", context: bpy.types.Context) -> None:
+    if 0 <= settings.active_row < len(settings.rows):
+        _told(settings.id_data, select_faces_of, settings.rows[settings.active_row].part)
+
+
 class EigenpartsMeshSettings(bpy.types.PropertyGroup):
     """What a mesh shows now; the values live in its state, so they follow it through undo, copies and files."""
 
@@ -106,6 +183,22 @@ class EigenpartsMeshSettings(bpy.types.PropertyGroup):
         get=_n_parts,
         set=_set_n_parts,
     )
+    rows: CollectionProperty(type=EigenpartsPartRow)
+    active_row: IntProperty(name="Part", description="Selects the faces of the part", update=_select_row)
+    vertex_attribute: _tick_box("VERTEX_ATTRIBUTE")
+    corner_colors: _tick_box("CORNER_COLORS")
+    face_sets: _tick_box("FACE_SETS")
+    vertex_groups: _tick_box("VERTEX_GROUPS")
+    materials: _tick_box("MATERIALS")
+    field: _tick_box("FIELD")
+    softness: FloatProperty(
+        name="Softness",
+        description="Width over which vertex groups pass from one part to the next; 0 for hard borders",
+        subtype="DISTANCE",
+        min=0,
+        get=_softness,
+        set=_set_softness,
+    )
 
 
 class EigenpartsJobStatus(bpy.types.PropertyGroup):
@@ -127,12 +220,20 @@ def _summary_value(settings: EigenpartsMeshSettings, name: str) -> int:
 
 
 def _segment(mesh: bpy.types.Mesh, **choice: Any) -> None:
-    """Segment at once; a property cannot report, so the panel tells what went wrong."""
+    labels = _told(mesh, partial(results.segment_mesh, **choice))
+    if labels is not None:
+        bpy.context.window_manager.eigenparts.problem = " ".join(labels.warnings)
+
+
+def _told(mesh: bpy.types.Mesh, action: Callable[..., Any], *arguments: Any) -> Any:
+    """Do something to a mesh at once; a property cannot report, so the panel tells what went wrong."""
     status = bpy.context.window_manager.eigenparts
+    status.problem = ""
     try:
-        status.problem = " ".join(results.segment_mesh(mesh, **choice).warnings)
+        return action(mesh, *arguments)
     except (Refusal, engine.EngineError) as error:
         status.problem = str(error)
+        return None
 
 
 _OWNERS = {
@@ -140,7 +241,7 @@ _OWNERS = {
     bpy.types.Mesh: EigenpartsMeshSettings,
     bpy.types.WindowManager: EigenpartsJobStatus,
 }
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(tuple(_OWNERS.values()))
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((EigenpartsPartRow, *_OWNERS.values()))
 
 
 def register() -> None:

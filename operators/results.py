@@ -1,20 +1,13 @@
-"""Write a segmentation to a mesh: the face map, its vertex version, and the colours."""
+"""Write a segmentation to a mesh: the face map, the table of parts, and whatever outputs the user chose."""
 
 import bpy
 import numpy as np
 
-from . import engine, state
-from .exchange import OwnAttribute, n_corners_of_polygon, refuse_foreign, vertex_of_corner, write_attribute
-from .palette import colours_of_labels
+from . import engine, outputs, part_table, state
+from .division import Division
+from .exchange import OwnAttribute, read_own_integers, refuse_foreign, write_attribute
 
 PART = OwnAttribute("part", "INT", "FACE")
-PART_VERTEX = OwnAttribute("part_vertex", "INT", "POINT")
-# Decimal colours are copied as they are; byte colours are converted one by one, which is thirty times slower.
-PART_COLOR = OwnAttribute("part_color", "FLOAT_COLOR", "CORNER", "color")
-RESULTS = (PART, PART_VERTEX, PART_COLOR)
-
-# The active colour attribute that the user had before ours.
-PREVIOUS_COLOR = "eigenparts_previous_color"
 
 
 def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: float) -> "engine.BranchLabels":
@@ -32,53 +25,58 @@ def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: flo
     Refusal, EngineError
         If the mesh has no usable analysis or the level does not exist; nothing is changed then.
     """
-    refuse_foreign(mesh, RESULTS)
+    refuse_foreign_results(mesh)
     analysis = state.load(mesh)
     mode = mode or state.mode_of(mesh)
     labels = engine.label_branches(analysis.hierarchy, analysis.branches, mode=mode, **choice)
-    write_labels(mesh, labels.of_faces(analysis.branches))
+    of_faces = labels.of_faces(analysis.branches)
+    write_attribute(mesh, PART, of_faces)
     state.remember_segmentation(mesh, labels, mode)
+    part_table.number_parts(mesh, labels.parts)
+    _list_parts(mesh, labels.parts)
+    outputs.write(mesh, _division(mesh, of_faces))
+    mesh.update()
     return labels
 
 
-def write_labels(mesh: bpy.types.Mesh, labels: np.ndarray) -> None:
-    """Write (F,) int32 labels of faces as results, and show their colours."""
-    label_of_corner = np.repeat(labels, n_corners_of_polygon(mesh))
-    write_attribute(mesh, PART, labels)
-    write_attribute(mesh, PART_VERTEX, majority_label(label_of_corner, vertex_of_corner(mesh), len(mesh.vertices)))
-    write_attribute(mesh, PART_COLOR, colours_of_labels(int(labels.max(initial=0)) + 1)[label_of_corner])
-    _show_colours(mesh)
+def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness: float | None = None) -> None:
+    """Write the outputs of the parts that a mesh shows, and take back those that are not wanted any more.
+
+    Parameters
+    ----------
+    names : set of str, optional
+        Keys of ``outputs.OUTPUTS``; those that were chosen before if None.
+    softness : float, optional
+        Width over which vertex groups are softened, in the mesh's unit; as before if None.
+    """
+    names = set(outputs.chosen(mesh)) if names is None else names
+    refuse_foreign(mesh, outputs.own_attributes(names))
+    labels = read_own_integers(mesh, PART)
+    outputs.choose(mesh, names, outputs.softness(mesh) if softness is None else softness)
+    outputs.write(mesh, _division(mesh, labels))
     mesh.update()
 
 
-def majority_label(label_of_corner: np.ndarray, vertex_of_corner: np.ndarray, n_vertices: int) -> np.ndarray:
-    """Return the (V,) int32 label that most corners at a vertex have, the smallest among equals; 0 without faces."""
-    label = np.zeros(n_vertices, dtype=np.int32)
-    label[vertex_of_corner] = label_of_corner
-    # Only where labels meet is there anything to count.
-    meets_others = np.zeros(n_vertices, dtype=bool)
-    meets_others[vertex_of_corner[label_of_corner != label[vertex_of_corner]]] = True
-    counted = meets_others[vertex_of_corner]
-    vertices, row = np.unique(vertex_of_corner[counted], return_inverse=True)
-    kinds, column = np.unique(label_of_corner[counted], return_inverse=True)
-    votes = np.bincount(row * len(kinds) + column, minlength=len(vertices) * len(kinds))
-    if len(vertices):
-        label[vertices] = kinds[votes.reshape(len(vertices), len(kinds)).argmax(axis=1)]
-    return label
+def refuse_foreign_results(mesh: bpy.types.Mesh) -> None:
+    """Raise a Refusal if something of the user's stands where a result belongs."""
+    refuse_foreign(mesh, (PART, *state.ATTRIBUTES, *outputs.own_attributes(outputs.chosen(mesh))))
 
 
-def forget_colours(mesh: bpy.types.Mesh) -> None:
-    """Make the user's earlier colour attribute active again."""
-    previous = mesh.get(PREVIOUS_COLOR)
-    if previous is not None:
-        del mesh[PREVIOUS_COLOR]
-    if isinstance(previous, str) and previous in mesh.color_attributes:
-        mesh.color_attributes.active_color_name = previous
+def _division(mesh: bpy.types.Mesh, labels: np.ndarray) -> Division:
+    present = np.flatnonzero(np.bincount(labels))
+    names = {part: part_table.name_of(mesh, part) for part in present.tolist()}
+    return Division(labels, names, part_table.colours(mesh, int(labels.max(initial=0)) + 1), outputs.softness(mesh))
 
 
-def _show_colours(mesh: bpy.types.Mesh) -> None:
-    active = mesh.color_attributes.active_color_name
-    if active != PART_COLOR.name:
-        if active:
-            mesh[PREVIOUS_COLOR] = active
-        mesh.color_attributes.active_color_name = PART_COLOR.name
+def _list_parts(mesh: bpy.types.Mesh, parts: "engine.Parts") -> None:
+    """Fill the list that the panel shows."""
+    if not hasattr(mesh, "eigenparts"):
+        # The command line does without the extension's properties.
+        return
+    rows = mesh.eigenparts.rows
+    rows.clear()
+    whole = parts.area.sum()
+    for place, depth in part_table.in_tree_order(parts):
+        row = rows.add()
+        row.part, row.depth = int(parts.id[place]), depth
+        row.share, row.n_faces = parts.area[place] / whole, int(parts.n_triangles[place])

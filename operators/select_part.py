@@ -1,5 +1,6 @@
 """Operator: select the faces of a part for editing."""
 
+import bmesh
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, IntProperty
@@ -36,6 +37,19 @@ class EIGENPARTS_OT_select_part(bpy.types.Operator):
             bpy.ops.object.mode_set(mode="EDIT")
             return {"FINISHED"}
         return {"CANCELLED"}
+
+
+def select_faces_of(mesh: bpy.types.Mesh, part: int) -> None:
+    """Select the faces of a part and nothing else, in the mode that the mesh is in."""
+    if mesh.is_editmode:
+        edited = bmesh.from_edit_mesh(mesh)
+        layer = edited.faces.layers.int.get(PART.name)
+        for face in edited.faces:
+            face.select_set(layer is not None and face[layer] == part)
+        bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+    else:
+        _select_faces(mesh, read_own_integers(mesh, PART) == part)
+        mesh.update()
 
 
 def _selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:

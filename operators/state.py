@@ -12,7 +12,15 @@ import bpy
 import numpy as np
 
 from . import engine
-from .exchange import OwnAttribute, fingerprint, read_own_integers, remove_own_attributes, write_attribute
+from .exchange import (
+    OwnAttribute,
+    fingerprint,
+    read_edges,
+    read_own_floats,
+    read_own_integers,
+    remove_own_attributes,
+    write_attribute,
+)
 from .refusals import Refusal
 
 STATE = "eigenparts_state"
@@ -23,10 +31,23 @@ BRANCHES = (
     OwnAttribute("eigenparts_branch_minima", "INT", "FACE"),
 )
 
+# What borders are cut from: the arc of each vertex in each tree, and the field on vertices and inside edges. The names
+# begin with a dot, so that Blender leaves them out of its lists.
+ARCS = (
+    OwnAttribute(".eigenparts_arc", "INT", "POINT"),
+    OwnAttribute(".eigenparts_arc_minima", "INT", "POINT"),
+)
+HEIGHT = OwnAttribute(".eigenparts_height", "FLOAT", "POINT")
+EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vector")
+ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS)
+# What outlives a new analysis: choices of the user, and what is known of the parts as long as they are the same.
+CHOICES = ("mode", "outputs", "softness")
+OF_PARTS = ("part_numbers", "part_names", "part_colours")
 # How levels are read, the default first.
 MODES = ("nested", "features")
 
 NEWER = "This mesh was analyzed by a newer version of Eigenparts; update the extension or analyze the mesh again."
+CUT = "The borders of this mesh were cut already; analyze it again to cut it at another level."
 CHANGED = "The mesh was changed after it was analyzed; analyze it again."
 DAMAGED = "The analysis stored on this mesh is damaged; analyze it again."
 ABSENT = "Analyze the mesh first."
@@ -49,6 +70,24 @@ class StoredAnalysis:
 
     hierarchy: "engine.Hierarchy"
     branches: tuple["engine.Branches", ...]
+
+
+@dataclass(frozen=True, eq=False)
+class BorderSource:
+    """What the borders of every level are cut from.
+
+    Attributes
+    ----------
+    profile : EdgeProfile
+        Of the edges of the mesh.
+    vertex_heights : (V,) float64
+    closing_heights : tuple of (A,) float64
+        For each tree, the value of the field at which each arc closes.
+    """
+
+    profile: "engine.EdgeProfile"
+    vertex_heights: np.ndarray
+    closing_heights: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -75,22 +114,74 @@ def is_analyzed(mesh: bpy.types.Mesh) -> bool:
     return STATE in mesh
 
 
-def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, description: str) -> None:
+def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, description: str) -> None:
     """Put an analysis on the mesh it was made from, in place of an earlier one."""
     hierarchy = analysis.hierarchy
-    mode = mode_of(mesh)
-    remove_own_attributes(mesh, [own.name for own in BRANCHES[len(analysis.branches) :]])
-    for own, branches in zip(BRANCHES, analysis.branches, strict=False):
-        write_attribute(mesh, own, branches.of_face)
+    kept = _kept(mesh, hierarchy)
+    n_trees = len(analysis.branches)
+    remove_own_attributes(mesh, [own.name for own in BRANCHES[n_trees:] + ARCS[n_trees:]])
+    _write_branches(mesh, analysis.branches)
     mesh[STATE] = {
         "schema": SCHEMA,
         "fingerprint": fingerprint(mesh),
         "description": description,
-        "mode": mode,
+        **kept,
         "hierarchy": _packed(hierarchy, _features(hierarchy)),
         **{f"tree_{i}": _packed(tree) for i, tree in enumerate(hierarchy.trees)},
         **{f"branches_{i}": _packed(branches) for i, branches in enumerate(analysis.branches)},
+        **_store_source(mesh, source),
     }
+
+
+def store_branches(mesh: bpy.types.Mesh, branches: tuple["engine.Branches", ...]) -> None:
+    """Put new faces of the arcs on a mesh whose faces were cut; its borders can be cut no more."""
+    _write_branches(mesh, branches)
+    for i, pieces in enumerate(branches):
+        mesh[STATE][f"branches_{i}"] = _packed(pieces)
+    mesh[STATE]["fingerprint"] = fingerprint(mesh)
+    remove_own_attributes(mesh, [own.name for own in (*ARCS, EDGE_HEIGHTS)])
+
+
+def load_source(mesh: bpy.types.Mesh) -> BorderSource:
+    """Return what borders are cut from; raises a Refusal if it is not there."""
+    state = _current(mesh)
+    try:
+        closing = tuple(_unpacked_array(state[f"closing_heights_{i}"]) for i in range(2 if "tree_1" in state else 1))
+        n_inside = min(2, max(0, int(state["n_inside_edge"])))
+    except (KeyError, TypeError, ValueError) as error:
+        raise Refusal(DAMAGED) from error
+    if ARCS[0].name not in mesh.attributes:
+        raise Refusal(CUT)
+    edges, heights = read_edges(mesh), vertex_heights(mesh)
+    inside = read_own_floats(mesh, EDGE_HEIGHTS, 2).reshape(-1, 2)[:, :n_inside].astype(np.float64)
+    along = np.column_stack([heights[edges[:, 0]], inside, heights[edges[:, 1]]])
+    arcs = tuple(read_own_integers(mesh, own) for own, _ in zip(ARCS, closing, strict=False))
+    if not all(_lie_within(arc, -1, len(heights)) for arc, heights in zip(arcs, closing, strict=True)):
+        raise Refusal(DAMAGED)
+    along[(arcs[0][edges] < 0).any(axis=1)] = np.nan
+    return BorderSource(engine.EdgeProfile(edges, along, arcs), heights, closing)
+
+
+def vertex_heights(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (V,) values of the field on the vertices."""
+    return read_own_floats(mesh, HEIGHT).astype(np.float64)
+
+
+def _write_branches(mesh: bpy.types.Mesh, branches: tuple["engine.Branches", ...]) -> None:
+    for own, pieces in zip(BRANCHES, branches, strict=False):
+        write_attribute(mesh, own, pieces.of_face)
+
+
+def _store_source(mesh: bpy.types.Mesh, source: BorderSource) -> dict[str, Any]:
+    """Write attributes, and return what goes into the state beside them."""
+    for own, arc in zip(ARCS, source.profile.arcs, strict=False):
+        write_attribute(mesh, own, arc)
+    write_attribute(mesh, HEIGHT, np.float32(source.vertex_heights))
+    inside = np.nan_to_num(source.profile.heights[:, 1:-1])
+    n_inside = inside.shape[1]
+    write_attribute(mesh, EDGE_HEIGHTS, np.float32(np.pad(inside, ((0, 0), (0, 2 - n_inside)))))
+    closing = {f"closing_heights_{i}": _packed_array(heights) for i, heights in enumerate(source.closing_heights)}
+    return {"n_inside_edge": n_inside, **closing}
 
 
 def load(mesh: bpy.types.Mesh) -> StoredAnalysis:
@@ -143,6 +234,29 @@ def forget(mesh: bpy.types.Mesh) -> None:
     """Remove the analysis; the attributes stay."""
     if STATE in mesh:
         del mesh[STATE]
+
+
+def _kept(mesh: bpy.types.Mesh, hierarchy: "engine.Hierarchy") -> dict[str, Any]:
+    """Return what of an earlier state goes on with a new analysis."""
+    state = mesh.get(STATE)
+    if not hasattr(state, "keys"):
+        return {}
+    names = CHOICES + (OF_PARTS if _has_trees(state, hierarchy) else ())
+    return {
+        name: state[name].to_dict() if hasattr(state[name], "keys") else state[name] for name in names if name in state
+    }
+
+
+def _has_trees(state: Any, hierarchy: "engine.Hierarchy") -> bool:
+    """Whether a state has the parts of a hierarchy, under the same numbers."""
+    try:
+        return all(
+            np.array_equal(_unpacked_array(state[f"tree_{i}"][column]), getattr(tree, column))
+            for i, tree in enumerate(hierarchy.trees)
+            for column in ("part", "extremum")
+        )
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return False
 
 
 def _current(mesh: bpy.types.Mesh) -> Any:

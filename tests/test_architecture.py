@@ -18,7 +18,7 @@ MAY_IMPORT = {
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},
-    "operators": {"bpy", "numpy"},
+    "operators": {"bmesh", "bpy", "numpy"},
     "cli": {"bpy", "numpy"},
     "ui": {"bpy", "gpu", "gpu_extras", "mathutils"},
 }

@@ -46,10 +46,27 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
             _draw_sentence(self.layout, str(refusal), context.region.width)
         else:
             _draw_level(self.layout, mesh, summary)
-            _draw_parts(self.layout, summary)
+            _draw_parts(self.layout, mesh)
         if problem := context.window_manager.eigenparts.problem:
             _draw_sentence(self.layout, problem, context.region.width)
         self.layout.operator("eigenparts.clear", icon="TRASH")
+
+
+class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
+    bl_label = "Output"
+    bl_parent_id = "EIGENPARTS_PT_parts"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.object.data.eigenparts
+        column = self.layout.column(heading="")
+        for name in ("vertex_attribute", "corner_colors", "face_sets", "vertex_groups"):
+            column.prop(settings, name)
+        softness = column.row()
+        softness.active = settings.vertex_groups
+        softness.prop(settings, "softness")
+        column.prop(settings, "materials")
+        column.prop(settings, "field")
 
 
 def _is_analyzed(context: bpy.types.Context) -> bool:
@@ -78,14 +95,9 @@ def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, summary: state
     column.operator("eigenparts.segment", text="Default Level", icon="LOOP_BACK")
 
 
-def _draw_parts(layout: bpy.types.UILayout, summary: state.Summary) -> None:
-    column = layout.column(align=True)
-    for part, share, n_faces in summary.parts[:MOST_ROWS]:
-        name = f"Part {part}" if part else "Body"
-        row = column.operator("eigenparts.select_part", text=f"{name}: {share:.1%} of the area, {n_faces} faces")
-        row.part = part
-    if len(summary.parts) > MOST_ROWS:
-        column.label(text=f"and {len(summary.parts) - MOST_ROWS} more")
+def _draw_parts(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
+    settings = mesh.eigenparts
+    layout.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", rows=6, maxrows=MOST_ROWS)
 
 
 def _draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
@@ -102,4 +114,6 @@ def _draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> Non
     column.label(text=line)
 
 
-register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_analyze, EIGENPARTS_PT_parts))
+register, unregister = bpy.utils.register_classes_factory(
+    (EIGENPARTS_PT_analyze, EIGENPARTS_PT_parts, EIGENPARTS_PT_outputs)
+)

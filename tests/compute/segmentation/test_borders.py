@@ -24,9 +24,9 @@ def crossings_at(analysis, level, mode="features"):
 def test_a_border_lies_at_the_height_of_its_saddle(tilted_star):
     mesh, heights = tilted_star
     analysis = analyze(mesh, field=heights)
-    parts = analysis.segment(level=4).parts
+    parts = analysis.segment(level=3).parts
     level_of_part = dict(zip(parts.id.tolist(), heights[parts.saddle].tolist(), strict=True))
-    borders = analysis.borders(level=4)
+    borders = analysis.borders(level=3)
     assert {border.part for border in borders} == set(parts.id.tolist()) - {0}
     for border in borders:
         np.testing.assert_allclose(border.points @ [0.3, 1.0, 0.05], level_of_part[border.part], atol=1e-12)
@@ -51,21 +51,23 @@ def test_a_part_of_a_torus_has_two_borders():
 
 def test_borders_of_an_open_mesh_end_at_its_boundary():
     mesh = rectangle(40, 20)
-    analysis = analyze(mesh, field=np.cos(2 * np.pi * mesh.vertices[:, 0]))
+    x, y, _ = mesh.vertices.T
+    analysis = analyze(mesh, field=np.cos(2 * np.pi * x) + 0.1 * y)
+    assert analysis.borders()
     for border in analysis.borders():
         assert not border.is_closed
-        np.testing.assert_allclose(np.sort(border.points[[0, -1], 1]), [0, 1], atol=1e-12)
+        assert set(border.points[[0, -1], 1]) <= {0.0, 1.0}
 
 
 def test_crossings_of_an_edge_are_in_order_and_the_last_arc_is_that_of_the_vertex(tilted_star):
     mesh, heights = tilted_star
     analysis = analyze(mesh, field=heights)
-    crossings = crossings_at(analysis, 4, "nested")
+    crossings = crossings_at(analysis, 3, "nested")
     profile = analysis.profile()
     same_edge = np.diff(crossings.edge) == 0
     assert (np.diff(crossings.parameter)[same_edge] >= 0).all()
     assert ((crossings.parameter >= 0) & (crossings.parameter <= 1)).all()
-    cuts = cut_arcs(analysis.hierarchy, analysis.branches(), 4, "nested")
+    cuts = cut_arcs(analysis.hierarchy, analysis.branches(), 3, "nested")
     last = np.append(~same_edge, True)
     for number, tree in enumerate(analysis.hierarchy.trees):
         part = tree.spread(cuts[number])

@@ -1,0 +1,96 @@
+"""Smoothing along the surface, by letting heat flow for a short time."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.linalg import cg
+
+from .errors import MeshError
+from .mesh import Floats, Ints, TriangleMesh
+
+# Heat that has spread for a time t from one side of a straight line falls from 90 % to 10 % over 2 ln 5 sqrt(t).
+WIDTH_OF_UNIT_TIME = 2 * np.log(5)
+# Weights below this are not worth a place in a vertex group.
+LEAST_WEIGHT = 1e-3
+# Triangles flatter than this fraction of the mean area count as if they had it.
+LEAST_AREA = 1e-6
+
+
+def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
+    """Return values on the vertices after heat has spread, so that a step becomes a slope of the given width.
+
+    Constants stay as they are, integrals too; nothing passes between pieces that are not connected.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    values : (V, n) float64
+    width : float
+        Distance on the surface over which a step falls from 90 % to 10 %, in the mesh's unit.
+
+    Raises
+    ------
+    MeshError
+        If the width is negative or not a number.
+
+    References
+    ----------
+    .. [1] Crane, Weischedel, Wardetzky, "Geodesics in Heat", ACM TOG 2013: the first of its three steps.
+    """
+    if not (np.isfinite(width) and width >= 0):
+        raise MeshError(f"The width is a distance, zero or more, not {width}.")
+    time = (width / WIDTH_OF_UNIT_TIME) ** 2
+    mass = _vertex_areas(mesh)
+    system = (diags_array(mass) + time * stiffness(mesh)).tocsr()
+    precondition = diags_array(1 / system.diagonal())
+    columns = [cg(system, mass * column, x0=column, rtol=1e-6, M=precondition)[0] for column in values.T]
+    return np.stack(columns, axis=1)
+
+
+def softened_labels(mesh: TriangleMesh, labels: NDArray[np.int32], width: float) -> tuple[Ints, Floats]:
+    """Return how much each vertex belongs to each label when the borders are softened.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    labels : (V,) int32
+    width : float
+        As for :func:`smoothed`.
+
+    Returns
+    -------
+    kinds : (P,) int64
+        The labels that occur.
+    weights : (V, P) float64
+        From 0 to 1, a sum of 1 for each vertex.
+    """
+    kinds, column = np.unique(labels, return_inverse=True)
+    hard = (column.reshape(-1, 1) == np.arange(len(kinds))).astype(np.float64)
+    weights = smoothed(mesh, hard, width)
+    weights[weights < LEAST_WEIGHT] = 0.0
+    return kinds.astype(np.int64), weights / weights.sum(axis=1, keepdims=True)
+
+
+def stiffness(mesh: TriangleMesh) -> csr_array:
+    """Return the (V, V) cotangent matrix of linear elements, positive semidefinite."""
+    corners = mesh.vertices[mesh.triangles]
+    area = np.maximum(mesh.areas, LEAST_AREA * mesh.areas.mean())
+    rows, columns, weights = [], [], []
+    for k in range(3):
+        # The cotangent at a corner weighs the side opposite to it.
+        left, right = corners[:, k - 2] - corners[:, k], corners[:, k - 1] - corners[:, k]
+        cotangent = np.einsum("ij,ij->i", left, right) / (4 * area)
+        ends = mesh.triangles[:, [k - 2, k - 1]]
+        rows += [ends[:, 0], ends[:, 1]]
+        columns += [ends[:, 1], ends[:, 0]]
+        weights += [-cotangent, -cotangent]
+    n = len(mesh.vertices)
+    places = (np.concatenate(rows), np.concatenate(columns))
+    off_diagonal = coo_array((np.concatenate(weights), places), shape=(n, n)).tocsr()
+    return (off_diagonal - diags_array(off_diagonal.sum(axis=1))).tocsr()
+
+
+def _vertex_areas(mesh: TriangleMesh) -> Floats:
+    """Return a third of the area of all triangles around each vertex; a little for vertices without any."""
+    areas = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas / 3, 3), len(mesh.vertices))
+    return np.maximum(areas, LEAST_AREA * mesh.areas.mean())

@@ -1,0 +1,91 @@
+"""Output: a material for each part, in slots behind those of the user, whose assignment is kept and given back."""
+
+import bpy
+import numpy as np
+
+from .division import Division
+from .exchange import OwnAttribute, own_names, read_own_integers, remove_own_attributes, write_attribute
+
+# What the user had assigned to the faces before; absent if all faces had the first slot.
+PREVIOUS_MATERIAL = OwnAttribute("eigenparts_previous_material", "INT", "FACE")
+ATTRIBUTES = (PREVIOUS_MATERIAL,)
+
+MATERIAL_INDEX = "material_index"
+# On our materials: the part they belong to.
+PART_OF_MATERIAL = "eigenparts_part"
+# On the mesh while it has our materials.
+IS_WRITTEN = "eigenparts_materials"
+
+
+def write(mesh: bpy.types.Mesh, division: Division) -> None:
+    """Give every part that has faces a slot with a material of its name and colour."""
+    if IS_WRITTEN not in mesh:
+        _keep_assignment(mesh)
+        mesh[IS_WRITTEN] = True
+    _drop_slots(mesh, set(division.names))
+    slot_of_part = np.zeros(len(division.colours), dtype=np.int32)
+    for part, name in division.names.items():
+        slot_of_part[part] = _slot(mesh, part)
+        _dress(mesh.materials[slot_of_part[part]], name, division.colours[part].tolist())
+    _assign(mesh, slot_of_part[division.labels])
+
+
+def remove(mesh: bpy.types.Mesh) -> None:
+    """Take our slots away and give the faces the materials they had."""
+    if IS_WRITTEN not in mesh:
+        return
+    if PREVIOUS_MATERIAL.name in own_names(mesh) and PREVIOUS_MATERIAL.name in mesh.attributes:
+        previous = read_own_integers(mesh, PREVIOUS_MATERIAL)
+        remove_own_attributes(mesh, [PREVIOUS_MATERIAL.name])
+        _drop_slots(mesh, set())
+        _assign(mesh, previous)
+    else:
+        _drop_slots(mesh, set())
+        if (attribute := mesh.attributes.get(MATERIAL_INDEX)) is not None:
+            mesh.attributes.remove(attribute)
+    del mesh[IS_WRITTEN]
+
+
+def _keep_assignment(mesh: bpy.types.Mesh) -> None:
+    if MATERIAL_INDEX in mesh.attributes:
+        indices = np.empty(len(mesh.polygons), dtype=np.int32)
+        mesh.attributes[MATERIAL_INDEX].data.foreach_get("value", indices)
+        write_attribute(mesh, PREVIOUS_MATERIAL, indices)
+
+
+def _drop_slots(mesh: bpy.types.Mesh, kept: set[int]) -> None:
+    """Remove the slots of ours whose parts are not to be kept, and materials that nobody uses any more."""
+    for slot in reversed(range(len(mesh.materials))):
+        material = mesh.materials[slot]
+        if material is not None and material.get(PART_OF_MATERIAL, None) is not None:
+            if material[PART_OF_MATERIAL] in kept:
+                continue
+            mesh.materials.pop(index=slot)
+            if material.users == 0:
+                bpy.data.materials.remove(material)
+
+
+def _slot(mesh: bpy.types.Mesh, part: int) -> int:
+    """Return the slot of a part's material, a new one if there is none."""
+    for slot, material in enumerate(mesh.materials):
+        if material is not None and material.get(PART_OF_MATERIAL) == part:
+            return slot
+    material = bpy.data.materials.new("Part")
+    material[PART_OF_MATERIAL] = part
+    mesh.materials.append(material)
+    return len(mesh.materials) - 1
+
+
+def _dress(material: bpy.types.Material, name: str, colour: list[float]) -> None:
+    """Give a material name and colour, leaving alone what the user made of its nodes."""
+    # Blender may have added a number because the name was taken.
+    if material.name.rpartition(".")[0] != name and material.name != name:
+        material.name = name
+    if list(material.diffuse_color) != colour:
+        material.diffuse_color = colour
+
+
+def _assign(mesh: bpy.types.Mesh, slots: np.ndarray) -> None:
+    if MATERIAL_INDEX not in mesh.attributes:
+        mesh.attributes.new(MATERIAL_INDEX, "INT", "FACE")
+    mesh.attributes[MATERIAL_INDEX].data.foreach_set("value", np.ascontiguousarray(slots, dtype=np.int32))

@@ -1,0 +1,64 @@
+"""All that a division can leave on a mesh beside the face map: each can be chosen, and follows the level."""
+
+from types import ModuleType
+
+import bpy
+
+from . import corner_colours, face_sets, field_values, material_slots, vertex_groups, vertex_map
+from .division import Division
+from .exchange import OwnAttribute
+from .state import STATE
+
+# Name, what the user reads of it, and the module that writes and removes it.
+OUTPUTS: dict[str, tuple[str, str, ModuleType]] = {
+    "VERTEX_ATTRIBUTE": ("Vertex Attribute", 'Attribute "part_vertex": the part of most faces around', vertex_map),
+    "CORNER_COLORS": ("Colors", 'Color attribute "part_color", crisp at the borders', corner_colours),
+    "FACE_SETS": ("Face Sets", "Show, hide and mask parts in sculpt mode", face_sets),
+    "VERTEX_GROUPS": ("Vertex Groups", "A vertex group for each part, of its name", vertex_groups),
+    "MATERIALS": ("Materials", "A material slot for each part; your own assignment comes back", material_slots),
+    "FIELD": ("Field", 'Attribute "eigenparts_field": the numbers whose hills are the parts', field_values),
+}
+DEFAULT = ("VERTEX_ATTRIBUTE", "CORNER_COLORS")
+# In the state: the chosen ones, one a line, and the width over which vertex groups are softened.
+CHOSEN, SOFTNESS = "outputs", "softness"
+
+
+def chosen(mesh: bpy.types.Mesh) -> tuple[str, ...]:
+    """Return which outputs the mesh is to have."""
+    state = mesh.get(STATE)
+    names = state.get(CHOSEN) if hasattr(state, "keys") else None
+    if not isinstance(names, str):
+        return DEFAULT
+    return tuple(name for name in OUTPUTS if name in names.splitlines())
+
+
+def softness(mesh: bpy.types.Mesh) -> float:
+    """Return the width over which vertex groups are softened, in the mesh's unit."""
+    state = mesh.get(STATE)
+    width = state.get(SOFTNESS) if hasattr(state, "keys") else None
+    return max(0.0, float(width)) if isinstance(width, int | float) else 0.0
+
+
+def choose(mesh: bpy.types.Mesh, names: set[str], width: float) -> None:
+    """Store which outputs an analyzed mesh is to have, and take back those it is not to have any more."""
+    for name in set(chosen(mesh)) - names:
+        OUTPUTS[name][2].remove(mesh)
+    mesh[STATE][CHOSEN] = "\n".join(name for name in OUTPUTS if name in names)
+    mesh[STATE][SOFTNESS] = width
+
+
+def write(mesh: bpy.types.Mesh, division: Division) -> None:
+    """Write the chosen outputs."""
+    for name in chosen(mesh):
+        OUTPUTS[name][2].write(mesh, division)
+
+
+def remove(mesh: bpy.types.Mesh) -> None:
+    """Take back all outputs."""
+    for _, _, output in OUTPUTS.values():
+        output.remove(mesh)
+
+
+def own_attributes(names: tuple[str, ...]) -> tuple[OwnAttribute, ...]:
+    """Return the attributes that some outputs write."""
+    return tuple(attribute for name in names for attribute in OUTPUTS[name][2].ATTRIBUTES)

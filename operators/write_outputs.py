@@ -1,0 +1,53 @@
+"""Operator: choose what the parts of a mesh are written to."""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty
+
+from . import outputs, results, state
+from .refusals import can_use_active_mesh, refusals_told
+
+
+class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
+    """Choose what the parts are written to; outputs that are left out are taken back"""
+
+    bl_idname = "eigenparts.write_outputs"
+    bl_label = "Write Outputs"
+    bl_options = {"REGISTER", "UNDO"}
+
+    outputs: EnumProperty(
+        name="Outputs",
+        description="What the mesh has beside the face map, and what follows the level",
+        items=[
+            (key, name, description, 2**i) for i, (key, (name, description, _)) in enumerate(outputs.OUTPUTS.items())
+        ],
+        options={"ENUM_FLAG"},
+        default=set(outputs.DEFAULT),
+    )
+    softness: FloatProperty(
+        name="Softness",
+        description="Width over which vertex groups pass from one part to the next; 0 for hard borders",
+        subtype="DISTANCE",
+        min=0,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not can_use_active_mesh(cls, context):
+            return False
+        if not state.is_analyzed(context.object.data):
+            cls.poll_message_set(state.ABSENT)
+        return state.is_analyzed(context.object.data)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        mesh = context.object.data
+        self.outputs, self.softness = set(outputs.chosen(mesh)), outputs.softness(mesh)
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            results.write_outputs(context.object.data, self.outputs, self.softness)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_write_outputs,))

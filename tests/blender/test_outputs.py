@@ -1,0 +1,134 @@
+"""Outputs: what the parts are written to follows the level, spares what is the user's, and can be taken back."""
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.blender.conftest import add_object, everything_on, values_of
+
+
+def labels_of(obj):
+    return values_of(obj.data, "part")
+
+
+def write(*names, **options):
+    assert bpy.ops.eigenparts.write_outputs(outputs=set(names), **options) == {"FINISHED"}
+
+
+def weights_of(obj, name):
+    group = obj.vertex_groups[name].index
+    weights = np.zeros(len(obj.data.vertices))
+    for vertex in obj.data.vertices:
+        weights[vertex.index] = sum(entry.weight for entry in vertex.groups if entry.group == group)
+    return weights
+
+
+def materials_of_faces(mesh):
+    return [mesh.materials[polygon.material_index].name for polygon in mesh.polygons]
+
+
+def test_face_sets_follow_the_level(analyzed):
+    write("FACE_SETS")
+    np.testing.assert_array_equal(values_of(analyzed.data, ".sculpt_face_set"), labels_of(analyzed) + 1)
+    analyzed.data.eigenparts.level = 1
+    np.testing.assert_array_equal(values_of(analyzed.data, ".sculpt_face_set"), labels_of(analyzed) + 1)
+
+
+def test_outputs_that_are_not_chosen_are_taken_back(analyzed):
+    write("FACE_SETS")
+    assert {"part_vertex", "part_color"}.isdisjoint(analyzed.data.attributes.keys())
+    analyzed.data.eigenparts.face_sets = False
+    analyzed.data.eigenparts.corner_colors = True
+    assert ".sculpt_face_set" not in analyzed.data.attributes
+    assert analyzed.data.color_attributes.active_color_name == "part_color"
+
+
+def test_face_sets_of_the_user_are_never_overwritten(analyzed):
+    analyzed.data.attributes.new(".sculpt_face_set", "INT", "FACE").data.foreach_set("value", np.full(1280, 7))
+    before = everything_on(analyzed.data)
+    with pytest.raises(RuntimeError, match="not from Eigenparts"):
+        write("FACE_SETS")
+    assert everything_on(analyzed.data) == before
+    assert set(values_of(analyzed.data, ".sculpt_face_set")) == {7}
+
+
+def test_vertex_groups_have_the_names_of_the_parts_and_weight_every_vertex_once(analyzed):
+    write("VERTEX_GROUPS", "VERTEX_ATTRIBUTE")
+    names = [row.title for row in analyzed.data.eigenparts.rows]
+    assert sorted(group.name for group in analyzed.vertex_groups) == sorted(names)
+    assert {len(vertex.groups) for vertex in analyzed.data.vertices} == {1}
+    np.testing.assert_array_equal(weights_of(analyzed, "Part 2"), values_of(analyzed.data, "part_vertex") == 2)
+
+
+def test_soft_weights_add_up_to_one_and_pass_over_the_width(analyzed, star):
+    write("VERTEX_GROUPS", softness=0.5)
+    weights = np.stack([weights_of(analyzed, group.name) for group in analyzed.vertex_groups])
+    np.testing.assert_allclose(weights.sum(axis=0), 1, atol=1e-5)
+    in_between = (weights > 0.1) & (weights < 0.9)
+    write("VERTEX_GROUPS", softness=1.0)
+    wider = np.stack([weights_of(analyzed, group.name) for group in analyzed.vertex_groups])
+    assert 0 < in_between.sum() < ((wider > 0.1) & (wider < 0.9)).sum()
+
+
+def test_vertex_groups_of_the_user_stay(analyzed):
+    mine = analyzed.vertex_groups.new(name="Part 1")
+    mine.add([3, 4], 0.25, "REPLACE")
+    write("VERTEX_GROUPS")
+    analyzed.data.eigenparts.level = 2
+    write()
+    assert [group.name for group in analyzed.vertex_groups] == ["Part 1"]
+    np.testing.assert_allclose(weights_of(analyzed, "Part 1")[[2, 3, 4]], [0, 0.25, 0.25])
+
+
+def test_every_face_has_the_material_of_its_part(analyzed):
+    write("MATERIALS")
+    title = {row.part: row.title for row in analyzed.data.eigenparts.rows}
+    assert materials_of_faces(analyzed.data) == [title[label] for label in labels_of(analyzed).tolist()]
+    analyzed.data.eigenparts.level = 1
+    assert sorted(slot.name for slot in analyzed.data.materials) == sorted(
+        row.title for row in analyzed.data.eigenparts.rows
+    )
+
+
+def test_materials_of_the_user_come_back(star_object):
+    mesh = star_object.data
+    for name in ("skin", "Part 1"):
+        mesh.materials.append(bpy.data.materials.new(name))
+    mesh.polygons.foreach_set("material_index", np.arange(len(mesh.polygons)) % 2)
+    before = materials_of_faces(mesh)
+    bpy.ops.eigenparts.analyze()
+    write("MATERIALS")
+    assert [slot.name for slot in mesh.materials][:2] == ["skin", "Part 1"]
+    mesh.eigenparts.level = 2
+    mesh.eigenparts.materials = False
+    assert materials_of_faces(mesh) == before
+    assert [material.name for material in bpy.data.materials] == ["Part 1", "skin"]
+
+
+def test_the_field_rises_towards_the_tips(analyzed, star):
+    write("FIELD")
+    field = values_of(analyzed.data, "eigenparts_field", dtype=np.float32)
+    assert np.corrcoef(field, np.linalg.norm(star.vertices, axis=1))[0, 1] > 0.9
+
+
+def test_clear_takes_all_outputs_back(star_object):
+    before = everything_on(star_object.data)
+    bpy.ops.eigenparts.analyze()
+    write("VERTEX_ATTRIBUTE", "CORNER_COLORS", "FACE_SETS", "VERTEX_GROUPS", "MATERIALS", "FIELD")
+    bpy.ops.eigenparts.clear()
+    assert everything_on(star_object.data) == before
+    assert (len(star_object.vertex_groups), len(star_object.data.materials), len(bpy.data.materials)) == (0, 0, 0)
+
+
+def test_choices_outlive_a_new_analysis(analyzed):
+    write("FACE_SETS", softness=0.25)
+    bpy.ops.eigenparts.analyze(field="EIGENFUNCTION")
+    assert analyzed.data.eigenparts.face_sets
+    assert not analyzed.data.eigenparts.corner_colors
+    assert analyzed.data.eigenparts.softness == pytest.approx(0.25)
+
+
+def test_outputs_need_an_analysis(star):
+    add_object(star.vertices, star.triangles)
+    with pytest.raises(RuntimeError, match="Analyze the mesh first"):
+        write("FACE_SETS")

@@ -1,0 +1,117 @@
+"""The list of parts: names and colours stay with their part."""
+
+from itertools import pairwise
+
+import bpy
+import numpy as np
+import pytest
+
+from examples import humanoid
+from examples.blender import add_posed_mesh
+from tests.blender.conftest import values_of
+
+
+def rows(obj):
+    return {row.part: row for row in obj.data.eigenparts.rows}
+
+
+def titles(obj):
+    return {row.part: row.title for row in obj.data.eigenparts.rows}
+
+
+@pytest.fixture
+def nested():
+    """A humanoid, where limbs hang on a torso and fingers on hands."""
+    obj = add_posed_mesh(humanoid())
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.eigenparts.analyze()
+    return obj
+
+
+def test_the_list_tells_area_and_faces(analyzed):
+    labels = values_of(analyzed.data, "part")
+    assert sum(row.share for row in analyzed.data.eigenparts.rows) == pytest.approx(1)
+    assert {part: row.n_faces for part, row in rows(analyzed).items()} == dict(
+        zip(*(column.tolist() for column in np.unique(labels, return_counts=True)), strict=True)
+    )
+
+
+def test_parts_of_parts_follow_them_and_carry_their_name(nested):
+    nested.data.eigenparts.level = 1000
+    listed = list(nested.data.eigenparts.rows)
+    assert max(row.depth for row in listed) > 1
+    for above, row in pairwise(listed):
+        assert row.depth <= above.depth + 1
+        if row.depth == above.depth + 1:
+            assert row.title.startswith(above.title + ".")
+    assert len({row.title for row in listed}) == len(listed)
+
+
+def test_a_name_never_changes_by_itself(nested):
+    at_default = titles(nested)
+    nested.data.eigenparts.level = 1000
+    at_highest = titles(nested)
+    nested.data.eigenparts.level = 1
+    assert titles(nested).items() <= {**at_highest, **at_default}.items()
+    assert at_default.items() <= {**at_highest, **at_default}.items()
+    bpy.ops.eigenparts.analyze()
+    assert titles(nested) == at_default
+
+
+def test_a_name_the_user_gives_stays_and_passes_on_to_parts_inside(nested):
+    child = next(row for row in nested.data.eigenparts.rows if row.depth == 1)
+    parent = next(row for row in nested.data.eigenparts.rows if child.title.startswith(row.title + "."))
+    part, inner = parent.part, child.part
+    parent.title = "Chest"
+    nested.data.eigenparts.level = 1000
+    bpy.ops.eigenparts.analyze()
+    assert titles(nested)[part] == "Chest"
+    assert titles(nested)[inner].startswith("Chest.")
+
+
+def test_names_are_unique_and_an_empty_one_brings_the_first_back(analyzed):
+    rows(analyzed)[1].title = "Arm"
+    rows(analyzed)[2].title = "Arm"
+    assert titles(analyzed)[2] == "Arm.001"
+    rows(analyzed)[1].title = ""
+    assert titles(analyzed)[1] == "Part 1"
+
+
+def test_groups_and_materials_take_a_new_name(analyzed):
+    bpy.ops.eigenparts.write_outputs(outputs={"VERTEX_GROUPS", "MATERIALS"})
+    rows(analyzed)[2].title = "Arm"
+    assert "Arm" in analyzed.vertex_groups
+    assert "Arm" in analyzed.data.materials
+    assert "Part 2" not in analyzed.vertex_groups
+
+
+def test_a_colour_the_user_gives_is_shown_and_stays(analyzed):
+    rows(analyzed)[2].color = (0.25, 0.5, 0.75)
+    bpy.ops.eigenparts.segment(level=2)
+    bpy.ops.eigenparts.segment()
+    colours = values_of(analyzed.data, "part_color", 4, np.float32, "color").reshape(-1, 3, 4)[:, 0]
+    shown = np.unique(colours[values_of(analyzed.data, "part") == 2], axis=0)
+    np.testing.assert_allclose(shown, [[0.25, 0.5, 0.75, 1.0]])
+
+
+def test_a_click_selects_the_faces_of_the_part(analyzed):
+    settings = analyzed.data.eigenparts
+    settings.active_row = [row.part for row in settings.rows].index(3)
+    selected = [polygon.select for polygon in analyzed.data.polygons]
+    np.testing.assert_array_equal(selected, values_of(analyzed.data, "part") == 3)
+    bpy.ops.object.mode_set(mode="EDIT")
+    settings.active_row = [row.part for row in settings.rows].index(1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    selected = [polygon.select for polygon in analyzed.data.polygons]
+    np.testing.assert_array_equal(selected, values_of(analyzed.data, "part") == 1)
+
+
+def test_names_that_make_no_sense_are_passed_over(analyzed):
+    analyzed.data["eigenparts_state"]["part_names"] = {"1": 7, "x": "y"}
+    analyzed.data["eigenparts_state"]["part_colours"] = {"2": "red"}
+    analyzed.data["eigenparts_state"]["part_numbers"] = {"1": [2, 1], "2": [1, 1]}
+    before = rows(analyzed)[3].color.copy()
+    bpy.ops.eigenparts.segment(level=2)
+    assert titles(analyzed)[0] == "Body"
+    assert all(title.startswith("Part") for part, title in titles(analyzed).items() if part)
+    assert rows(analyzed)[3].color == before
