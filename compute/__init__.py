@@ -9,6 +9,7 @@ from .msc.diagram_distance import diagram_distance
 from .msc.morse_smale import MorseSmaleComplex
 from .msc.reeb import ReebGraph
 from .registration.matching import Matching, match
+from .registration.population import register
 from .segmentation.parts import Segmentation
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "analyze",
     "diagram_distance",
     "match",
+    "register",
     "persistence_curve",
     "reeb_graph",
     "size_function",

@@ -10,6 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from ..analysis import Analysis
 from ..errors import RegistrationError
 from ..mesh import Floats, Ints
+from ..surface import Surface
 from .hypotheses import Effort, agrees_with_signs, find_hypotheses, spectrum_of
 from .selection import Candidate, Judge, confidence_of, distinct_candidates, fit_of
 from .spectral_shape import SpectralShape, spectral_shape
@@ -92,18 +93,30 @@ def match(
     RegistrationError
         If a sign is given for a function that has none, or is not +1 or -1.
     """
-    signs = _checked_signs(flips or {})
     here, there = spectral_shape(source.matching_basis), spectral_shape(target.matching_basis)
+    return match_surfaces(source.surface, target.surface, here, there, flips=flips, mirrored=mirrored)
+
+
+def match_surfaces(
+    source: Surface,
+    target: Surface,
+    source_shape: SpectralShape,
+    target_shape: SpectralShape,
+    *,
+    flips: Mapping[int, int] | None = None,
+    mirrored: bool = False,
+) -> Matching:
+    """Match two shapes as `match` does, where what it makes of them first is at hand."""
+    signs = _checked_signs(flips or {})
     if not signs and not mirrored and share_topology(source, target):
-        return match_by_number(here, there)
-    return match_shapes(here, there, signs, mirrored=mirrored)
+        return match_by_number(source_shape, target_shape)
+    return match_shapes(source_shape, target_shape, signs, mirrored=mirrored)
 
 
-def share_topology(source: Analysis, target: Analysis) -> bool:
-    """Whether the analyzed surfaces have the same triangles over the same vertices."""
-    one, other = source.surface, target.surface
-    same_vertices = np.array_equal(one.vertex_of_input, other.vertex_of_input)
-    return same_vertices and np.array_equal(one.mesh.triangles, other.mesh.triangles)
+def share_topology(source: Surface, target: Surface) -> bool:
+    """Whether two surfaces have the same triangles over the same vertices."""
+    same_vertices = np.array_equal(source.vertex_of_input, target.vertex_of_input)
+    return same_vertices and np.array_equal(source.mesh.triangles, target.mesh.triangles)
 
 
 def match_by_number(source: SpectralShape, target: SpectralShape) -> Matching:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
 
 from ..fem.assembly import stiffness_matrix
 from ..fem.eigenbasis import Eigenbasis
@@ -36,6 +37,8 @@ class SpectralShape:
         Orthonormal on the unit surface; the first is the constant 1.
     node : (n,) int64
         The unknown of the eigenbasis that each point is; numbers below V are vertices of the input.
+    input_triangle : (m,) int64
+        The triangle of the input that each triangle lies in.
     """
 
     positions: Floats
@@ -43,6 +46,7 @@ class SpectralShape:
     values: Floats
     functions: Floats
     node: Ints
+    input_triangle: Ints
 
     @property
     def n_functions(self) -> int:
@@ -96,6 +100,18 @@ class SpectralShape:
         smooth = self.functions @ coefficients
         return np.tanh(smooth / (3 * np.median(np.abs(smooth)) + np.finfo(float).tiny))
 
+    def shares_at_points(self, labels: Ints, n_labels: int) -> csr_array:
+        """Return (n, n_labels) how much area of each label lies around each point, a third of each triangle there.
+
+        Parameters
+        ----------
+        labels : (T,) int
+            Label of each triangle of the input.
+        """
+        columns = np.repeat(labels[self.input_triangle], 3)
+        entries = (np.repeat(self.areas / 3, 3), (self.triangles.ravel(), columns))
+        return coo_array(entries, shape=(len(self.positions), n_labels)).tocsr()
+
     def project(self, values: Floats) -> Floats:
         """Return (k, ...) coefficients of values (n, ...) given at the points."""
         return (self.functions * self.point_areas[:, None]).T @ values
@@ -114,6 +130,7 @@ def spectral_shape(basis: Eigenbasis) -> SpectralShape:
         np.append(0.0, basis.values * area),
         np.hstack([constant, basis.functions[node] * np.sqrt(area)]),
         node,
+        basis.surface.input_triangle[net.triangle_of_surface],
     )
 
 

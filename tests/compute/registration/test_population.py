@@ -1,0 +1,121 @@
+"""Equal label, same part: on other triangulations, with parts too many or too few, in any executor."""
+
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from compute.analysis import Analysis, analyze
+from compute.errors import RegistrationError
+from compute.mesh import TriangleMesh
+from compute.registration.population import register
+from tests.compute.registration.shapes import LUMPS, lumpy_ball, moved, shuffled
+
+HORN = ((-1, 0, 0.3), 1.0, 0.25)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return analyze(lumpy_ball())
+
+
+@pytest.fixture(scope="module")
+def finer():
+    return analyze(shuffled(lumpy_ball(4))[0], order=1)
+
+
+@pytest.fixture(scope="module")
+def horned():
+    return analyze(shuffled(lumpy_ball(lumps=(*LUMPS, HORN)))[0])
+
+
+def middles(mesh: TriangleMesh) -> np.ndarray:
+    return mesh.vertices[mesh.triangles].mean(axis=1)
+
+
+def agreement(analysis: Analysis, labels: np.ndarray, reference: Analysis, expected: np.ndarray) -> float:
+    """Return the share of area on which labels are those of the nearest triangle of the reference."""
+    nearest = cKDTree(middles(reference.mesh)).query(middles(analysis.mesh))[1]
+    return analysis.mesh.areas[labels == expected[nearest]].sum() / analysis.mesh.areas.sum()
+
+
+def test_another_triangulation_gets_the_same_parts(ball, finer):
+    own, other = register([ball, finer])
+    assert set(other.parts.id) == set(own.parts.id)
+    assert agreement(finer, other.labels, ball, own.labels) > 0.97
+
+
+def test_the_reference_keeps_its_parts(ball, finer):
+    expected = finer.segment(level=2)
+    _, reference = register([ball, finer], reference=1, level=2)
+    np.testing.assert_array_equal(reference.labels, expected.labels)
+
+
+def test_parts_are_found_at_whatever_level_they_stand(ball):
+    """A lump that is the last but one here is the largest there, so the levels do not agree."""
+    other = analyze(shuffled(lumpy_ball(lumps=(*LUMPS[:3], (LUMPS[3][0], 1.3, 0.3))))[0])
+    own, registered = register([ball, other], level=3)
+    assert set(registered.parts.id) == set(own.parts.id)
+
+
+def test_a_part_too_many_gets_a_label_that_no_other_shape_has(ball, horned):
+    twice = analyze(shuffled(moved(horned.mesh), seed=5)[0])
+    plain, first, second = register([ball, horned, twice])
+    extra = [set(one.parts.id) - set(plain.parts.id) for one in (first, second)]
+    assert [len(ids) for ids in extra] == [1, 1]
+    assert extra[0].isdisjoint(extra[1])
+    at_horn = cKDTree(middles(horned.mesh)).query(3 * np.array(HORN[0]))[1]
+    assert first.labels[at_horn] in extra[0]
+
+
+def test_a_part_that_is_missing_is_left_out(ball, horned):
+    full, plain = register([horned, ball])
+    assert set(plain.parts.id) < set(full.parts.id)
+
+
+def test_tables_count_what_the_labels_say(ball, horned):
+    _, other = register([ball, horned])
+    ids, counts = np.unique(other.labels, return_counts=True)
+    np.testing.assert_array_equal(other.parts.id, ids)
+    np.testing.assert_array_equal(other.parts.n_triangles, counts)
+
+
+def test_poses_with_one_topology_correspond_by_number(ball):
+    bent = ball.mesh.vertices + 0.1 * np.sin(ball.mesh.vertices[:, [1, 2, 0]])
+    own, other = register([ball, analyze(TriangleMesh(bent, ball.mesh.triangles))])
+    assert (own.labels == other.labels).mean() > 0.9
+
+
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_executors_give_what_a_loop_gives(ball, finer, pool):
+    # Processes are spawned, as they are inside Blender, where forking is not safe.
+    options = {"mp_context": get_context("spawn")} if pool is ProcessPoolExecutor else {}
+    with pool(max_workers=2, **options) as executor:
+        results = register([ball, finer, finer], executor=executor)
+    for result, expected in zip(results, register([ball, finer, finer]), strict=True):
+        np.testing.assert_array_equal(result.labels, expected.labels)
+
+
+@pytest.mark.filterwarnings("ignore:Sending large graph")
+def test_a_cluster_gives_what_a_loop_gives(ball, finer):
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        cluster.get_client() as client,
+    ):
+        results = register([ball, finer, finer], executor=client.get_executor())
+    for result, expected in zip(results, register([ball, finer, finer]), strict=True):
+        np.testing.assert_array_equal(result.labels, expected.labels)
+
+
+def test_progress_is_told_after_each_pair(ball, finer):
+    told = []
+    register([ball, finer, finer], progress=lambda fraction, text: told.append((fraction, text)))
+    assert told[-1] == (1.0, "Registered 2 of 2 shapes")
+
+
+def test_a_reference_that_is_not_there_is_refused(ball):
+    with pytest.raises(RegistrationError, match="no shape 3"):
+        register([ball], reference=3)
