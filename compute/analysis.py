@@ -7,9 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import FieldError, LevelError
+from .errors import LevelError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
-from .fields import DIFFUSION, DIFFUSION_FUNCTIONS, Net, ScalarField, diffusion_field, eigenfunction_field, user_field
+from .field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
+from .fields import DIFFUSION, Net, ScalarField, eigenfunction_field
 from .mesh import Floats, Ints, TriangleMesh
 from .msc.diagram import PersistenceDiagram
 from .msc.links import links_of
@@ -28,8 +29,6 @@ from .segmentation.subparts import inserted
 from .segmentation.zero_level import divide_at_zero
 from .surface import Surface, clean_surface
 
-# Functions computed for the first eigenfunctions when nobody asks for a number.
-DEFAULT_FUNCTIONS = 12
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.
 WITHIN_THRESHOLD = 0.004
@@ -79,7 +78,7 @@ class Analysis:
         """The eigenfunctions the field was made of; computed when first asked for if the field is the user's."""
         if self._known_basis is not None:
             return self._known_basis
-        return solve_on_surface(self.surface, min(DEFAULT_FUNCTIONS, _n_available(self.surface, "neumann")))
+        return solve_on_surface(self.surface, min(DEFAULT_FUNCTIONS, n_available(self.surface, "neumann")))
 
     @cached_property
     def matching_basis(self) -> Eigenbasis:
@@ -240,7 +239,7 @@ def analyze(
     progress = rising(progress or silent)
     progress(0.0, "Checking the mesh")
     surface = clean_surface(mesh)
-    chosen = _field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
+    chosen = choose_field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
     progress(0.8, "Finding the features")
     net = chosen.field.net
     topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
@@ -303,43 +302,6 @@ def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
     return divide_at_zero(eigenfunction_field(analysis.eigenbasis, function), analysis.mesh, analysis.surface)
 
 
-@dataclass(frozen=True, eq=False)
-class _ChosenField:
-    field: ScalarField
-    basis: Eigenbasis | None
-    warnings: tuple[str, ...] = ()
-
-
-def _field(
-    surface: Surface,
-    choice: str | int | ArrayLike,
-    n_functions: int | None,
-    order: int | str,
-    boundary: str,
-    progress: Progress,
-) -> _ChosenField:
-    if isinstance(choice, str):
-        if choice != DIFFUSION:
-            raise FieldError(f'The field "{choice}" does not exist; use "diffusion", a number or values of your own.')
-        n_functions = n_functions or min(DIFFUSION_FUNCTIONS, _n_available(surface, boundary))
-    elif isinstance(choice, int | np.integer):
-        n_functions = max(n_functions or min(DEFAULT_FUNCTIONS, _n_available(surface, boundary)), int(choice))
-    else:
-        return _ChosenField(user_field(surface, choice), None)
-    order, warnings = _resolved_order(surface, order)
-    basis = solve_on_surface(surface, n_functions, order=order, boundary=boundary, progress=progress)
-    scalar_field = diffusion_field(basis) if isinstance(choice, str) else eigenfunction_field(basis, int(choice))
-    return _ChosenField(scalar_field, basis, warnings)
-
-
-def _n_available(surface: Surface, boundary: str) -> int:
-    """Return a number of functions that elements of every order carry, one at least."""
-    edges = surface.mesh.edges
-    n_vertices = len(np.unique(surface.mesh.triangles))
-    n_held = len(np.unique(edges.vertices[edges.n_triangles == 1])) if boundary == "dirichlet" else 1
-    return max(n_vertices - n_held, 1)
-
-
 def _solve_for_matching(surface: Surface) -> Eigenbasis:
     order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)
     n_functions = min(MATCHING_FUNCTIONS, _n_unknowns(surface, order) - 1)
@@ -351,16 +313,6 @@ def _n_unknowns(surface: Surface, order: int) -> int:
     n_vertices, n_triangles = len(np.unique(surface.mesh.triangles)), len(surface.mesh.triangles)
     n_edges = len(surface.mesh.edges.vertices)
     return n_vertices + (order - 1) * n_edges + (order - 1) * (order - 2) // 2 * n_triangles
-
-
-def _resolved_order(surface: Surface, order: int | str) -> tuple[int, tuple[str, ...]]:
-    if isinstance(order, str):
-        if order != "auto":
-            raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')
-        n_triangles = len(surface.mesh.triangles)
-        order = 3 if n_triangles <= 80_000 else 2 if n_triangles <= 200_000 else 1
-        return order, (() if order == 3 else (f"The mesh is large: elements of order {order} instead of 3 were used.",))
-    return order, ()
 
 
 def _divided_further(analysis: Analysis, whole: Segmentation, part: int, mode: str) -> Segmentation:

@@ -17,6 +17,8 @@ DIFFUSION = "diffusion"
 DIFFUSION_FUNCTIONS = 30
 # Time of the diffusion in units of 1 / (first eigenvalue); 1 gave the best parts on the Princeton benchmark.
 DIFFUSION_TIME = 1.0
+# Beyond this multiple of the first eigenvalue a function's weight in the diffusion field is below 1e-8.
+LARGEST_RATIO = np.log(1e8) / DIFFUSION_TIME
 # Eigenvalues closer than this, relatively, count as one eigenvalue that several functions share.
 SAME_EIGENVALUE = 0.01
 # The diffusion field of a round sphere varies by 1e-3 through its triangulation alone; that of a slightly stretched
