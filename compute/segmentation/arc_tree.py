@@ -3,14 +3,13 @@
 A part is always a subtree, so a segmentation at any level is one label for each arc.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ..mesh import Bools, Floats, Ints
-from ..msc.merge_tree import MergeTree
+from ..msc.merge_tree import MergeTree, ends_of_paths
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,18 +60,18 @@ class ArcTree:
     @cached_property
     def closing_before(self) -> Ints:
         """(A,) the smallest ``closing`` on the way from the leaf that names the arc to the arc, itself left out."""
-        before = np.full(len(self.part), _NEVER)
+        before = np.full(len(self.part), NEVER)
         smallest: dict[int, int] = {}
         # A parent has a larger index than its children, so the way from a leaf is met in its order.
         for arc, (part, closing) in enumerate(zip(self.part.tolist(), self.closing.tolist(), strict=True)):
-            before[arc] = smallest.get(part, _NEVER)
-            smallest[part] = min(closing, smallest.get(part, _NEVER))
+            before[arc] = smallest.get(part, NEVER)
+            smallest[part] = min(closing, smallest.get(part, NEVER))
         return before
 
     @cached_property
     def least_closing_inside(self) -> Ints:
         """(A,) the smallest ``closing`` of all arcs strictly inside the subtree of each arc."""
-        least = np.full(len(self.part), _NEVER)
+        least = np.full(len(self.part), NEVER)
         for arc, parent in enumerate(self.parent.tolist()):
             if parent >= 0:
                 least[parent] = min(least[parent], least[arc], self.closing[arc])
@@ -113,7 +112,7 @@ class ArcPlaces:
 
 
 # More than any number of pairs.
-_NEVER = np.iinfo(np.int64).max
+NEVER = np.iinfo(np.int64).max
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,30 +121,48 @@ class Features:
 
     Attributes
     ----------
-    part_of_extremum : dict
-        The number of the part each extremum stands for: first those without a pair, then by falling persistence.
-    closing_of_saddle : dict
-        The place of each saddle's pair by falling persistence, the first of them if it has several.
-    n_roots : int
-        Extrema without a pair.
+    part : (n,) int64
+        The number of the part each extremum stands for, 0 for noise and for other net vertices: first those without a
+        pair, then by falling persistence.
+    closing : (n,) int64
+        The place of each saddle's pair by falling persistence, the first of them if it has several, -1 for saddles
+        that survive always; where parts never end, a number that no level reaches.
+    n_roots, n_features : int
+        Extrema without a pair, and with one.
     """
 
-    part_of_extremum: dict[int, int]
-    closing_of_saddle: dict[int, int]
+    part: Ints
+    closing: Ints
     n_roots: int
+    n_features: int
 
 
 def build_arc_tree(tree: MergeTree, is_of_maxima: bool, features: Features) -> tuple[ArcTree, ArcPlaces]:
-    """Cancel the noise of a merge tree and cut the rest into arcs, at the saddles of both kinds of extrema."""
-    growth = _Growth(tree, features)
-    for vertex, pair in _events(tree, np.array(list(features.closing_of_saddle), dtype=np.int64)):
-        if pair < 0:
-            growth.cut(vertex)
-        elif int(tree.extremum[pair]) in features.part_of_extremum:
-            growth.merge(pair)
-        else:
-            growth.swallow(pair)
-    return growth.arc_tree(is_of_maxima), growth.places()
+    """Cancel the noise of a merge tree and cut the rest into arcs, at the saddles of both kinds of extrema.
+
+    A component of the sweep keeps the name of its oldest extremum, so its arcs follow each other: the leaf, then one for each
+    merge it outlives and each cut. All are known at once.
+    """
+    events = _events(tree, features)
+    leaf = np.flatnonzero(features.part * (tree.basin == np.arange(len(tree.basin))))
+    leaf = leaf[np.argsort(features.part[leaf])]
+    extremum = np.concatenate([leaf, events.component])
+    chains = _chains(tree, leaf, events)
+    parent, saddle = np.full(len(extremum), -1), np.full(len(extremum), -1)
+    parent[chains.arc], saddle[chains.arc] = len(leaf) + chains.event, events.vertex[chains.event]
+    closing = np.where(saddle < 0, NEVER, features.closing[saddle])
+    arcs = ArcTree(
+        is_of_maxima,
+        features.n_roots,
+        features.n_features,
+        parent,
+        features.part[extremum],
+        extremum,
+        saddle,
+        closing,
+        *np.zeros((4, len(extremum))),
+    )
+    return arcs, _places(tree, features, leaf, events, chains)
 
 
 def arc_of_vertex(tree: MergeTree, arcs: ArcTree, places: ArcPlaces) -> Ints:
@@ -171,95 +188,109 @@ def _first_open_ancestor(arc: Ints, height: Ints, parent: Ints, closing_rank: In
     return arc
 
 
-def _events(tree: MergeTree, cuts: Ints) -> Iterator[tuple[int, int]]:
-    """Yield (vertex, pair) in the order of the sweep, pair -1 for a cut; merges come before a cut at one vertex."""
-    vertex = np.concatenate([tree.saddle, cuts])
-    pair = np.concatenate([np.arange(len(tree.saddle)), np.full(len(cuts), -1)])
+@dataclass(frozen=True, eq=False)
+class _Events:
+    """What opens arcs, in the order of the sweep: merges of two components that are no noise, and cuts.
+
+    Attributes
+    ----------
+    vertex, component : (e,) int64
+        Where, and the component that goes on.
+    ended : (e,) int64
+        The component that ends in a merge; -1 for a cut.
+    time : (e,) int64
+        The place among all that happens, noise included.
+    swallowed, swallowed_at : (w,) int64
+        The pairs that are noise, and the same for them.
+    """
+
+    vertex: Ints
+    component: Ints
+    ended: Ints
+    time: Ints
+    swallowed: Ints
+    swallowed_at: Ints
+
+
+def _events(tree: MergeTree, features: Features) -> _Events:
+    cut = np.flatnonzero(features.closing < NEVER)
+    cut_component = _component_at(tree, cut)
+    # A cut has nothing to do where the component is noise, or where a merge at the same vertex has just opened an arc.
+    n, is_kept = len(tree.rank), features.part[tree.extremum] > 0
+    merged_here = np.isin(cut * n + cut_component, tree.saddle[is_kept] * n + tree.elder[is_kept])
+    is_real = (features.part[cut_component] > 0) & ~merged_here
+    cut, cut_component = cut[is_real], cut_component[is_real]
+    vertex = np.concatenate([tree.saddle, cut])
+    component = np.concatenate([tree.elder, cut_component])
+    ended = np.concatenate([tree.extremum, np.full(len(cut), -1)])
+    # The sort is stable: merges come before a cut at one vertex.
     order = np.argsort(tree.rank[vertex], kind="stable")
-    yield from zip(vertex[order].tolist(), pair[order].tolist(), strict=True)
+    time = np.empty(len(order), dtype=np.int64)
+    time[order] = np.arange(len(order))
+    opens = order[np.concatenate([is_kept, np.ones(len(cut), dtype=bool)])[order]]
+    swallowed = np.flatnonzero(~is_kept)
+    return _Events(vertex[opens], component[opens], ended[opens], time[opens], swallowed, time[swallowed])
 
 
-class _Growth:
-    """An arc tree while its sweep goes on."""
+def _component_at(tree: MergeTree, vertex: Ints) -> Ints:
+    """Return the component that each vertex is in when the sweep has passed it, by its oldest extremum."""
+    elder = np.full(len(tree.rank), -1)
+    elder[tree.extremum] = tree.elder
+    end = np.full(len(tree.rank), len(tree.rank))
+    end[tree.extremum] = tree.rank[tree.saddle]
+    return _first_open_ancestor(tree.basin[vertex], tree.rank[vertex], elder, end)
 
-    def __init__(self, tree: MergeTree, features: Features) -> None:
-        self._tree = tree
-        self._features = features
-        self._opened_at: list[int] = []
-        self._parent: list[int] = []
-        self._extremum: list[int] = []
-        self._saddle: list[int] = []
-        self._closing: list[int] = []
-        # The youngest arc of each component that goes on, under the name of its oldest extremum.
-        own = [extremum for extremum in features.part_of_extremum if tree.basin[extremum] == extremum]
-        self._open = {extremum: self._new_arc(extremum) for extremum in own}
-        self._survivor: dict[int, int] = {}
-        self._swallowed: list[tuple[int, int, int]] = []
-        self._entry = dict(self._open)
 
-    def merge(self, pair: int) -> None:
-        """Close the arcs of both components of a pair and open the one behind the saddle."""
-        young, saddle, old = self._row(pair)
-        arc = self._new_arc(old, saddle)
-        for component in (young, old):
-            self._close(self._open.pop(component), arc, saddle)
-        self._open[old] = arc
-        self._survivor[young] = old
+@dataclass(frozen=True, eq=False)
+class _Chains:
+    """The arcs of all components one after the other, without the last one of each root.
 
-    def swallow(self, pair: int) -> None:
-        """Let a component that is noise vanish in the older one."""
-        young, saddle, old = self._row(pair)
-        self._survivor[young] = old
-        self._swallowed.append((young, saddle, old))
-        if old in self._open:
-            self._entry[young] = self._open[old]
+    Attributes
+    ----------
+    key : (r,) int64
+        Component times the number of events of all kinds plus time, ascending.
+    arc, event : (r,) int64
+        The arc that is closed, and the event that closes it.
+    """
 
-    def cut(self, vertex: int) -> None:
-        """Close the arc just below a vertex, and go on with a new one."""
-        component = self._component(int(self._tree.basin[vertex]))
-        arc = self._open.get(component)
-        if arc is None or self._opened_at[arc] == vertex:
-            return
-        self._open[component] = self._new_arc(self._extremum[arc], vertex)
-        self._close(arc, self._open[component], vertex)
+    key: Ints
+    arc: Ints
+    event: Ints
 
-    def arc_tree(self, is_of_maxima: bool) -> ArcTree:
-        """Return what has grown."""
-        part = [self._features.part_of_extremum[extremum] for extremum in self._extremum]
-        columns = (np.array(column) for column in (self._parent, part, self._extremum, self._saddle, self._closing))
-        n_features = len(self._features.part_of_extremum) - self._features.n_roots
-        return ArcTree(is_of_maxima, self._features.n_roots, n_features, *columns, *np.zeros((4, len(part))))
 
-    def places(self) -> ArcPlaces:
-        """Return where the basins of all extrema start."""
-        entry = np.zeros(len(self._tree.rank), dtype=np.int64)
-        cap = np.zeros(len(self._tree.rank), dtype=np.int64)
-        entry[list(self._entry)] = list(self._entry.values())
-        # What was swallowed by noise shares the fate of that noise, which ended later.
-        for young, saddle, old in reversed(self._swallowed):
-            is_noise = young not in self._entry
-            entry[young] = entry[old] if is_noise else self._entry[young]
-            cap[young] = cap[old] if is_noise else self._tree.rank[saddle]
-        return ArcPlaces(entry, cap)
+def _chains(tree: MergeTree, leaf: Ints, events: _Events) -> _Chains:
+    n_times = _n_times(events)
+    ends = np.flatnonzero(events.ended >= 0)
+    component = np.concatenate([events.component, events.ended[ends]])
+    event = np.concatenate([np.arange(len(events.vertex)), ends])
+    order = np.argsort(component * n_times + events.time[event], kind="stable")
+    component, event = component[order], event[order]
+    leaf_of = np.zeros(len(tree.rank), dtype=np.int64)
+    leaf_of[leaf] = np.arange(len(leaf))
+    is_first = np.append(True, component[1:] != component[:-1])
+    arc = np.where(is_first, leaf_of[component], len(leaf) + np.roll(event, 1)) if len(event) else event
+    return _Chains(component * n_times + events.time[event], arc, event)
 
-    def _row(self, pair: int) -> tuple[int, int, int]:
-        tree = self._tree
-        return int(tree.extremum[pair]), int(tree.saddle[pair]), int(tree.elder[pair])
 
-    def _component(self, extremum: int) -> int:
-        survivor = self._survivor
-        while (heir := survivor.get(extremum, extremum)) != extremum:
-            survivor[extremum] = extremum = survivor.get(heir, heir)
-        return extremum
+def _n_times(events: _Events) -> int:
+    return len(events.time) + len(events.swallowed) + 1
 
-    def _new_arc(self, extremum: int, opened_at: int = -1) -> int:
-        self._opened_at.append(opened_at)
-        self._parent.append(-1)
-        self._extremum.append(extremum)
-        self._saddle.append(-1)
-        self._closing.append(_NEVER)
-        return len(self._parent) - 1
 
-    def _close(self, arc: int, parent: int, saddle: int) -> None:
-        self._parent[arc], self._saddle[arc] = parent, saddle
-        self._closing[arc] = self._features.closing_of_saddle[saddle]
+def _places(tree: MergeTree, features: Features, leaf: Ints, events: _Events, chains: _Chains) -> ArcPlaces:
+    entry, cap = (np.zeros(len(tree.rank), dtype=np.int64) for _ in range(2))
+    entry[leaf] = np.arange(len(leaf))
+    young, old = tree.extremum[events.swallowed], tree.elder[events.swallowed]
+    # The arc that is open in the older component: the leaf, or what the last event before opened.
+    key = old * _n_times(events) + events.swallowed_at
+    row = chains.key.searchsorted(key) - 1
+    is_later = (row >= 0) & (features.part[old] > 0)
+    is_later[is_later] = chains.key[row[is_later]] // _n_times(events) == old[is_later]
+    entry[young] = entry[old]
+    entry[young[is_later]] = len(leaf) + chains.event[row[is_later]]
+    cap[young] = tree.rank[tree.saddle[events.swallowed]]
+    # What was swallowed by noise shares the fate of that noise, which ended later.
+    fate = np.arange(len(tree.rank))
+    by_noise = features.part[old] == 0
+    fate[young[by_noise]] = old[by_noise]
+    fate = ends_of_paths(fate)
+    return ArcPlaces(entry[fate], cap[fate])

@@ -8,7 +8,7 @@ from ..errors import LevelError
 from ..mesh import Bools, Floats, Ints
 from ..msc.merge_tree import MergeTree
 from ..msc.morse_smale import FieldTopology
-from .arc_tree import ArcTree, Features, arc_of_vertex, build_arc_tree
+from .arc_tree import NEVER, ArcTree, Features, arc_of_vertex, build_arc_tree
 
 # Pairs below this fraction of the field's range are noise of the triangulation (Reuter 2009, section 4.3).
 NOISE_THRESHOLD = 1e-4
@@ -119,14 +119,18 @@ def _grow_trees(sweeps: list[_Sweep], features: Ints, always: Ints) -> tuple[tup
 
     ``features`` are the pairs above the noise by falling persistence, ``always`` the saddles that survive at any level.
     """
-    roots = [extremum for sweep in sweeps for extremum in sweep.tree.roots.tolist()]
-    part = {extremum: number for number, extremum in enumerate([*roots, *features[:, 0].tolist()], start=1)}
-    # Where pairs share a saddle, the most persistent one keeps it alive.
-    closing_of_saddle = {saddle: place for place, saddle in reversed(list(enumerate(features[:, 1].tolist())))}
-    closing_of_saddle |= dict.fromkeys(always.tolist(), -1)
+    n_vertices = len(sweeps[0].tree.rank)
+    extrema = np.concatenate([*(sweep.tree.roots for sweep in sweeps), features[:, 0]])
+    part = np.zeros(n_vertices, dtype=np.int64)
+    part[extrema] = np.arange(1, len(extrema) + 1)
+    closing = np.full(n_vertices, NEVER)
+    # Where pairs share a saddle, the most persistent one keeps it alive: the last one that is written stays.
+    closing[features[::-1, 1]] = np.arange(len(features))[::-1]
+    closing[always] = -1
+    known = Features(part, closing, len(extrema) - len(features), len(features))
     trees, arcs = [], []
     for sweep in sweeps:
-        tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, Features(part, closing_of_saddle, len(roots)))
+        tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, known)
         trees.append(tree)
         arcs.append(arc_of_vertex(sweep.tree, tree, places))
     return tuple(trees), tuple(arcs)
