@@ -60,12 +60,21 @@ def _selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
 
 def _select_faces(mesh: bpy.types.Mesh, is_selected: np.ndarray) -> None:
     """Select faces and nothing else; edit mode would grow the selection from vertices and edges left selected."""
-    for elements, selection in (
-        (mesh.vertices, np.zeros(len(mesh.vertices), dtype=bool)),
-        (mesh.edges, np.zeros(len(mesh.edges), dtype=bool)),
-        (mesh.polygons, is_selected),
+    for name, domain, selection in (
+        (".select_vert", "POINT", np.zeros(len(mesh.vertices), dtype=bool)),
+        (".select_edge", "EDGE", np.zeros(len(mesh.edges), dtype=bool)),
+        (".select_poly", "FACE", is_selected),
     ):
-        elements.foreach_set("select", selection)
+        _selection_attribute(mesh, name, domain).data.foreach_set("value", selection)
+
+
+def _selection_attribute(mesh: bpy.types.Mesh, name: str, domain: str) -> bpy.types.Attribute:
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and attribute.data_type != "BOOLEAN":
+        # Blender 5.0 gives edges that a script made a selection of pairs of numbers, and crashes when it is used.
+        mesh.attributes.remove(attribute)
+        attribute = None
+    return attribute or mesh.attributes.new(name, "BOOLEAN", domain)
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_select_part,))

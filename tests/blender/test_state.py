@@ -75,6 +75,14 @@ def test_the_panel_says_what_the_slider_cannot(analyzed):
     assert bpy.context.window_manager.eigenparts.problem == ""
 
 
+def test_the_level_is_refused_in_edit_mode(analyzed, labels_at_two):
+    bpy.ops.object.mode_set(mode="EDIT")
+    analyzed.data.eigenparts.level = 1
+    assert "Leave edit mode" in bpy.context.window_manager.eigenparts.problem
+    bpy.ops.object.mode_set(mode="OBJECT")
+    np.testing.assert_array_equal(values_of(analyzed.data, "part"), labels_at_two)
+
+
 def state_of(obj):
     return obj.data["eigenparts_state"]
 
