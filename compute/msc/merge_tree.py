@@ -83,23 +83,26 @@ def ends_of_paths(target: Ints) -> Ints:
 
 def _elder_rule(rank: Ints, sectors: Sectors, basin: Ints) -> tuple[Ints, Ints, Ints]:
     """Join the components at each saddle; the younger one (with the higher minimum) is paired and ends."""
-    oldest: dict[int, int] = {}
-    height = rank.__getitem__
-
-    def component(minimum: int) -> int:
-        while (above := oldest.get(minimum, minimum)) != minimum:
-            oldest[minimum] = minimum = oldest.get(above, above)
-        return minimum
-
-    pairs: list[tuple[int, int, int]] = []
-    previous_saddle, previous_minimum = -1, -1
-    for saddle, minimum in zip(sectors.vertex.tolist(), basin[sectors.lowest].tolist(), strict=True):
-        if saddle == previous_saddle:
-            here, there = component(previous_minimum), component(minimum)
-            if here != there:
-                young, old = (here, there) if height(here) > height(there) else (there, here)
-                pairs.append((young, saddle, old))
-                oldest[young] = old
-        previous_saddle, previous_minimum = saddle, minimum
-    extremum, saddle_of, elder = np.array(pairs, dtype=np.int64).reshape(-1, 3).T
-    return extremum, saddle_of, elder
+    minimum, label = np.unique(rank[basin[sectors.lowest]], return_inverse=True)
+    minimum = vertices_by_rank(rank)[minimum]
+    # Numbered from the lowest up, so the larger number is the younger one; a component has the number of its oldest.
+    older = list(range(len(minimum)))
+    young, old, at = [], [], []
+    previous_saddle, first = -1, -1
+    for row, (saddle, there) in enumerate(zip(sectors.vertex.tolist(), label.reshape(-1).tolist(), strict=True)):
+        if saddle != previous_saddle:
+            previous_saddle, first = saddle, there
+            continue
+        here = first
+        while here != older[here]:
+            older[here] = here = older[older[here]]
+        while there != older[there]:
+            older[there] = there = older[older[there]]
+        if here != there:
+            here, there = min(here, there), max(here, there)
+            older[there] = here
+            young.append(there)
+            old.append(here)
+            at.append(row)
+    rows = np.array(at, dtype=np.int64)
+    return minimum[np.array(young, dtype=np.int64)], sectors.vertex[rows], minimum[np.array(old, dtype=np.int64)]

@@ -140,8 +140,8 @@ class Features:
 def build_arc_tree(tree: MergeTree, is_of_maxima: bool, features: Features) -> tuple[ArcTree, ArcPlaces]:
     """Cancel the noise of a merge tree and cut the rest into arcs, at the saddles of both kinds of extrema.
 
-    A component of the sweep keeps the name of its oldest extremum, so its arcs follow each other: the leaf, then one for each
-    merge it outlives and each cut. All are known at once.
+    A component of the sweep keeps the name of its oldest extremum, so its arcs follow each other: the leaf, then one
+    for each merge it outlives and each cut. All are known at once.
     """
     events = _events(tree, features)
     leaf = np.flatnonzero(features.part * (tree.basin == np.arange(len(tree.basin))))
