@@ -27,6 +27,7 @@ def _give_materials(mesh: bpy.types.Mesh) -> None:
 def _material(name: str, colour: list[float]) -> bpy.types.Material:
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     material.diffuse_color = colour
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = colour
     return material

@@ -32,3 +32,6 @@ def remove(mesh: bpy.types.Mesh) -> None:
         del mesh[PREVIOUS_COLOR]
     if isinstance(previous, str) and previous in mesh.color_attributes:
         mesh.color_attributes.active_color_name = previous
+    elif mesh.color_attributes.active_color_name == PART_COLOR.name:
+        # Blender 5.2 keeps the name of an attribute that is gone.
+        mesh.color_attributes.active_color_name = ""

@@ -77,7 +77,8 @@ def _part_material() -> bpy.types.Material:
     if name in bpy.data.materials:
         return bpy.data.materials[name]
     material = bpy.data.materials.new(name)
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     surface = material.node_tree.nodes["Principled BSDF"]
     surface.inputs["Roughness"].default_value = 0.55
     surface.inputs["Specular IOR Level"].default_value = 0.25
@@ -100,7 +101,8 @@ def _set_up(scene: bpy.types.Scene, view: View) -> None:
     # The palette is made for the screen as it is, not for a film look.
     scene.view_settings.view_transform = "Standard"
     scene.world = bpy.data.worlds.new("eigenparts picture")
-    scene.world.use_nodes = True
+    if scene.world.node_tree is None:
+        scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.9, 0.95, 1.0, 1.0)
     scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.6
 
