@@ -14,5 +14,6 @@ register, unregister = bpy.utils.register_submodule_factory(
         "plot_diagram",
         "trace_complex",
         "write_outputs",
+        "cut",
     ],
 )

@@ -23,6 +23,8 @@ class Crossings:
     edge : (n,) int64
     parameter : (n,) float64
         From 0 at the first vertex of the edge to 1 at the second.
+    is_entry : (n,) bool
+        Whether the edge enters the part there, on its way from the first vertex to the second; it leaves it otherwise.
     border : (n,) int64
         Which border it is; a border is the closed or open line around one cut-off part of one tree.
     arcs : (n, trees) int64
@@ -31,6 +33,7 @@ class Crossings:
 
     edge: Ints
     parameter: Floats
+    is_entry: Bools
     border: Ints
     arcs: Ints
 
@@ -91,7 +94,7 @@ def cross_edges(
     parameter = np.maximum.accumulate(2.0 * edge + parameter[order]) - 2.0 * edge
     start = np.stack([arcs[profile.edges[edge, 0]] for arcs in profile.arcs], axis=1).astype(np.int64)
     border = arc[order] * len(trees) + of_tree
-    return Crossings(edge, parameter, border, _arcs_behind(edge, behind[order], of_tree, start))
+    return Crossings(edge, parameter, is_entry[order], border, _arcs_behind(edge, behind[order], of_tree, start))
 
 
 def part_of_border(cuts: list[Ints]) -> Ints:

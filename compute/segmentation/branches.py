@@ -61,6 +61,18 @@ def build_branches(parents: list[Ints], shares: list[ArcAreas], graph: FaceGraph
     arcs = [
         _majority_arc(parent, share, n_faces)[graph.stands_for] for parent, share in zip(parents, shares, strict=True)
     ]
+    return connected_branches(arcs, graph)
+
+
+def connected_branches(arcs: list[Ints], graph: FaceGraph) -> tuple[Branches, ...]:
+    """Divide faces into connected branches, each on one arc of every tree.
+
+    Parameters
+    ----------
+    arcs : list of (F,) int64
+        For each tree, the arc of each face.
+    graph : FaceGraph
+    """
     left, right = graph.neighbours.T
     same = np.logical_and.reduce([arc[left] == arc[right] for arc in arcs])
     _, first, piece = np.unique(_pieces(graph, same)[graph.stands_for], return_index=True, return_inverse=True)

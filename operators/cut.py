@@ -1,0 +1,112 @@
+"""Operator: cut the mesh along the borders of its parts."""
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty
+
+from . import engine, results, state
+from .exchange import read_mesh, read_own_integers
+from .mesh_cut import cut_mesh
+from .refusals import Refusal, can_use_active_mesh, refusals_told
+
+
+class EIGENPARTS_OT_cut(bpy.types.Operator):
+    """Make the borders of the parts run along edges"""
+
+    bl_idname = "eigenparts.cut"
+    bl_label = "Cut Borders"
+    bl_options = {"REGISTER", "UNDO"}
+
+    method: EnumProperty(
+        name="Method",
+        description="How edges come to lie on the borders",
+        items=[
+            ("INSERT", "Insert Edges", "Cut the faces that borders cross; all that the mesh carries is interpolated"),
+            ("EXISTING", "Existing Edges", "Leave the mesh as it is, and move borders to short lines of its edges"),
+        ],
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not can_use_active_mesh(cls, context):
+            return False
+        if not state.is_analyzed(context.object.data):
+            cls.poll_message_set(state.ABSENT)
+        return state.is_analyzed(context.object.data)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            n_before = len(context.object.data.polygons)
+            if self.method == "INSERT":
+                insert_borders(context.object)
+            else:
+                move_borders(context.object.data)
+            n_new = len(context.object.data.polygons) - n_before
+            self.report({"INFO"}, f"{n_new} faces were added." if n_new else "The borders run along edges.")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def insert_borders(obj: bpy.types.Object) -> None:
+    """Cut the mesh of an object along the borders of the parts that it shows.
+
+    Raises
+    ------
+    Refusal
+        If others use the mesh too, or it cannot be cut; nothing is changed then.
+    """
+    mesh = obj.data
+    _refuse_shared(obj)
+    results.refuse_foreign_results(mesh)
+    analysis, source = state.load(mesh), state.load_source(mesh)
+    level, mode = state.summarize(mesh).level, state.mode_of(mesh)
+    cuts = engine.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
+    crossings = engine.cross_edges(source.profile, analysis.hierarchy.trees, source.closing_heights, cuts)
+    arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
+    faces = cut_mesh(mesh, crossings, np.stack(source.profile.arcs, axis=1).astype(np.int64))
+    for number, arc in enumerate(arcs):
+        arcs[number] = np.concatenate([arc, arc[faces.origin]])
+        arcs[number][faces.face] = faces.arcs[:, number]
+    _show(mesh, arcs, level, mode)
+
+
+def move_borders(mesh: bpy.types.Mesh) -> None:
+    """Move the borders of the parts that a mesh shows to short lines of its edges."""
+    results.refuse_foreign_results(mesh)
+    analysis = state.load(mesh)
+    level, mode = state.summarize(mesh).level, state.mode_of(mesh)
+    cuts = engine.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
+    labels = read_own_integers(mesh, results.PART)
+    moved = engine.shortened_borders(labels, _face_graph(mesh))
+    arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
+    for arc, cut in zip(arcs, cuts, strict=True):
+        # The last arc of a tree is a root, which is body at every level.
+        arc_of_part = np.full(int(moved.max(initial=0)) + 1, len(cut) - 1)
+        ends = np.flatnonzero((cut > 0) & (cut < len(arc_of_part)))
+        arc_of_part[cut[ends]] = ends
+        arc[moved != labels] = arc_of_part[moved[moved != labels]]
+    _show(mesh, arcs, level, mode)
+
+
+def _show(mesh: bpy.types.Mesh, arcs: list[np.ndarray], level: int, mode: str) -> None:
+    """Store new arcs of the faces, and divide the mesh as before."""
+    graph = _face_graph(mesh)
+    state.store_branches(mesh, engine.connected_branches([arc[graph.stands_for] for arc in arcs], graph))
+    results.segment_mesh(mesh, level=level, mode=mode)
+
+
+def _face_graph(mesh: bpy.types.Mesh) -> "engine.FaceGraph":
+    arrays = read_mesh(mesh)
+    triangles = engine.TriangleMesh(arrays.vertices, arrays.triangles)
+    return engine.face_graph(triangles, engine.clean_surface(triangles), arrays.polygon_of_triangle)
+
+
+def _refuse_shared(obj: bpy.types.Object) -> None:
+    n_users = obj.data.users - obj.data.use_fake_user
+    if n_users > 1:
+        raise Refusal(f"The mesh is used {n_users} times; make it single-user first, so that only this object is cut.")
+    if any(modifier.type == "MULTIRES" for modifier in obj.modifiers):
+        raise Refusal("Cutting would lose the details of the Multiresolution modifier; apply it first.")
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_cut,))
