@@ -15,5 +15,6 @@ register, unregister = bpy.utils.register_submodule_factory(
         "trace_complex",
         "write_outputs",
         "cut",
+        "separate",
     ],
 )

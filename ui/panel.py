@@ -67,6 +67,11 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
         softness.prop(settings, "softness")
         column.prop(settings, "materials")
         column.prop(settings, "field")
+        column = self.layout.column(align=True)
+        cuts = column.row(align=True)
+        cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN").method = "INSERT"
+        cuts.operator("eigenparts.cut", text="Use Edges").method = "EXISTING"
+        column.operator("eigenparts.separate", icon="MOD_EXPLODE")
 
 
 def _is_analyzed(context: bpy.types.Context) -> bool:

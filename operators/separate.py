@@ -1,0 +1,85 @@
+"""Operator: make an object of each part."""
+
+import bmesh
+import bpy
+import numpy as np
+
+from . import part_table, state
+from .exchange import read_own_integers, remove_own_attributes
+from .refusals import Refusal, can_use_active_mesh, refusals_told
+from .results import PART
+
+
+class EIGENPARTS_OT_separate(bpy.types.Operator):
+    """Make an object of each part; modifiers, parents, vertex groups and shape keys are kept"""
+
+    bl_idname = "eigenparts.separate"
+    bl_label = "Separate Parts"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not can_use_active_mesh(cls, context):
+            return False
+        if not state.is_analyzed(context.object.data):
+            cls.poll_message_set(state.ABSENT)
+        return state.is_analyzed(context.object.data)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            pieces = separate_parts(context.object)
+            for piece in pieces:
+                piece.select_set(True)
+            self.report({"INFO"}, f"{len(pieces)} objects.")
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Divide an object by its parts and return all that it became, itself first.
+
+    As when Blender separates, the object itself stays with the first part, the body if it has faces, so that whatever
+    refers to it still does. The pieces keep the outputs that were chosen, and forget the analysis: it was of the whole.
+    """
+    mesh = obj.data
+    labels = read_own_integers(mesh, PART)
+    parts = np.unique(labels).tolist()
+    if len(parts) < 2:
+        raise Refusal("The mesh is one part; there is nothing to separate.")
+    names = {part: f"{obj.name} {part_table.name_of(mesh, part)}" for part in parts}
+    others = [_copy(obj, _mesh_of_part(mesh, labels == part, names[part]), names[part]) for part in parts[1:]]
+    obj.data = _mesh_of_part(mesh, labels == parts[0], names[parts[0]])
+    if mesh.users == 0:
+        bpy.data.meshes.remove(mesh)
+    return [obj, *others]
+
+
+def _copy(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> bpy.types.Object:
+    copy = obj.copy()
+    copy.name, copy.data = name, mesh
+    for collection in obj.users_collection:
+        collection.objects.link(copy)
+    return copy
+
+
+def _mesh_of_part(mesh: bpy.types.Mesh, is_kept: np.ndarray, name: str) -> bpy.types.Mesh:
+    """Return a copy of a mesh with some of its faces only."""
+    piece = mesh.copy()
+    piece.name = name
+    _forget_analysis(piece)
+    edited = bmesh.new()
+    edited.from_mesh(piece)
+    dropped = [face for face, kept in zip(edited.faces, is_kept.tolist(), strict=True) if not kept]
+    bmesh.ops.delete(edited, geom=dropped, context="FACES")
+    edited.to_mesh(piece)
+    edited.free()
+    return piece
+
+
+def _forget_analysis(mesh: bpy.types.Mesh) -> None:
+    remove_own_attributes(mesh, [own.name for own in state.ATTRIBUTES])
+    mesh.property_unset("eigenparts")
+    state.forget(mesh)
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_separate,))
