@@ -35,6 +35,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--tables", nargs="+", default=["convergence", "accuracy", "size"])
     parser.add_argument("--sizes", nargs="+", type=int, default=[5_000, 10_000, 20_000, 40_000, 80_000, 160_000])
     parser.add_argument("--pairs", nargs="+", type=int, default=[10, 30])
+    parser.add_argument("--solvers", nargs="+", default=list(SOLVERS), choices=list(SOLVERS))
     parser.add_argument("--repeats", type=int, default=3)
     options = parser.parse_args(arguments)
     print(versions())
@@ -84,18 +85,19 @@ def sizes(options: argparse.Namespace) -> list[dict]:
     rows = []
     for name, mesh in meshes:
         for n_pairs in options.pairs:
-            rows += _compared(name, mesh, n_pairs, options.repeats)
+            rows += _compared(name, mesh, n_pairs, options)
     print_table("Time and memory", rows)
     return rows
 
 
-def _compared(name: str, mesh: TriangleMesh, n_pairs: int, repeats: int) -> list[dict]:
+def _compared(name: str, mesh: TriangleMesh, n_pairs: int, options: argparse.Namespace) -> list[dict]:
     rows = []
     n_vertices = len(mesh.vertices)
-    solvers = [s for s in SOLVERS if s != "scipy" or (n_vertices <= MOST_VERTICES_OF_PLAIN_SCIPY and n_pairs == 10)]
+    is_slow = n_vertices > MOST_VERTICES_OF_PLAIN_SCIPY or n_pairs != 10
+    solvers = [solver for solver in options.solvers if not (is_slow and solver == "scipy")]
     ours: np.ndarray | None = None
     for solver in solvers:
-        found = measured(solver, mesh, n_pairs, 1 if solver == "scipy" else repeats)
+        found = measured(solver, mesh, n_pairs, 1 if solver == "scipy" else options.repeats)
         if not found:
             continue
         ours = np.array(found["values"]) if solver == "cubic" else ours
@@ -146,9 +148,7 @@ def print_table(title: str, rows: list[dict]) -> None:
 
 
 def _cell(value: object) -> str:
-    if not isinstance(value, float):
-        return str(value)
-    return f"{value:.1e}" if 0 < abs(value) < 1e-2 else f"{value:.2f}"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
 
 
 if __name__ == "__main__":

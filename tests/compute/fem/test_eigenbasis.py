@@ -24,6 +24,13 @@ def test_eigenvalues_converge_at_twice_the_order_on_a_tetrahedron(order, rate):
     assert np.log2((coarse - exact) / (fine - exact)) == pytest.approx(rate, abs=0.1)
 
 
+def test_tetrahedron_has_its_closed_form_with_all_multiplicities():
+    """One eigenvalue 4 pi^2 / 3 (m^2 + mn + n^2) for each pair ±(m, n): up to sixfold here."""
+    norms = sorted(m * m + m * n + n * n for m in range(-6, 7) for n in range(-6, 7))[1::2]
+    values = solve_eigenbasis(tetrahedron(5), 24).values
+    np.testing.assert_allclose(values, 4 * np.pi**2 / 3 * np.array(norms[:24]), rtol=1e-7)
+
+
 @pytest.mark.parametrize(("order", "rate"), [(1, 2), (2, 3), (3, 4)])
 def test_eigenfunctions_converge_one_order_above_their_degree(order, rate):
     coarse, fine = (_distance_to_exact_eigenspace(n, order) for n in (2, 3))
