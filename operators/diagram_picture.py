@@ -17,6 +17,8 @@ PAPER, INK, QUIET, GRID, BAND = ((v, v, v) for v in (1.0, 0.13, 0.42, 0.9, 0.945
 BLUE, RED, PURPLE, GREEN = (0.0, 0.467, 0.733), (0.8, 0.2, 0.067), (0.533, 0.18, 0.447), (0.067, 0.467, 0.2)
 # More points than this cannot be told apart; the most persistent ones are drawn.
 MOST_POINTS = 3000
+# From this many points on they are drawn smaller.
+CROWD = 150
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +83,7 @@ def _draw_points(canvas: Canvas, plotted: Plotted, letters: Letters) -> None:
     first, last = np.full(2, bottom - margin), np.full(2, top + margin)
     frame = _Frame(canvas, letters, np.array([120.0, 150.0]), np.array([800.0, 830.0]), first, last)
     band = plotted.threshold * (top - bottom)
-    for across, up in ((0, 1), (1, 0)):
+    for across, up in ((0, 1), (1, 0)) if band > 0 else ():
         corners = np.array([first, last, last, first])
         corners[2, across] -= band
         corners[3, up] += band
@@ -91,8 +93,9 @@ def _draw_points(canvas: Canvas, plotted: Plotted, letters: Letters) -> None:
     canvas.line(frame.place(np.array([first, last])), QUIET, 1.5)
     _draw_box(frame)
     points = diagram.points[-MOST_POINTS:]
+    radius = 7 if len(points) < CROWD else 4
     for (x, y), centre in zip(points, frame.place(points), strict=True):
-        _draw_dot(canvas, centre, BLUE if x < y else RED)
+        _draw_dot(canvas, centre, BLUE if x < y else RED, radius)
     for centre in frame.place(diagram.components):
         canvas.diamond(centre, 11, PAPER)
         canvas.diamond(centre, 9, INK)
@@ -147,7 +150,7 @@ def _draw_curve(canvas: Canvas, plotted: Plotted, letters: Letters) -> None:
         frame.write("noise", (right[0] - 10, frame.high[1] - 18), size=17, align=(1, 0.5))
     powers = np.arange(first_power, 1)
     _draw_axis(frame, 0, {power: _percent(power) for power in powers})
-    _draw_axis(frame, 1, {k: v for k, v in _ticks(0, 1.08 * most).items() if float(k).is_integer()})
+    _draw_axis(frame, 1, {k: f"{k:.0f}" for k in _ticks(0, 1.08 * most) if k.is_integer()})
     count = np.arange(most, 0, -1) if len(shown) else np.zeros(0)
     edges = np.repeat(np.concatenate([[first_power], shown, [0.0]]), 2)[1:-1]
     heights = np.repeat(np.concatenate([count, [0]]), 2)
@@ -182,9 +185,9 @@ def _draw_box(frame: _Frame) -> None:
     frame.canvas.line(np.array(corners), INK, 1.5)
 
 
-def _draw_dot(canvas: Canvas, centre: np.ndarray, colour: tuple[float, ...]) -> None:
-    canvas.disk(centre, 8.5, PAPER)
-    canvas.disk(centre, 7, colour)
+def _draw_dot(canvas: Canvas, centre: np.ndarray, colour: tuple[float, ...], radius: float = 7) -> None:
+    canvas.disk(centre, 1.2 * radius, PAPER)
+    canvas.disk(centre, radius, colour)
 
 
 def _ticks(first: float, last: float) -> dict[float, str]:
@@ -194,7 +197,7 @@ def _ticks(first: float, last: float) -> dict[float, str]:
     step = power * next(s for s in (1, 2, 5, 10) if s * power >= rough)
     digits = max(0, int(-np.floor(np.log10(step) + 1e-9)))
     values = np.arange(np.ceil(first / step), np.floor(last / step) + 1) * step
-    if digits > 4 or np.abs(values).max(initial=0) >= 1e6:
+    if digits > 4 or np.abs(values).max(initial=0) >= 1e5:
         return {value: f"{value:.2g}" for value in values.tolist()}
     return {value: f"{value + 0.0:.{digits}f}" for value in np.round(values, digits).tolist()}
 
