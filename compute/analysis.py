@@ -2,7 +2,7 @@
 
 import dataclasses
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -202,7 +202,8 @@ class Analysis:
         branches = self.branches()
         labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
         of_faces = labels.of_faces(branches)
-        whole = Segmentation(of_faces, labels.parts, labels.level, labels.warnings)
+        trace = partial(self.borders, labels.level, mode)
+        whole = Segmentation(of_faces, labels.parts, labels.level, labels.warnings, trace)
         return whole if within is None else _divided_further(self, whole, within, mode)
 
 

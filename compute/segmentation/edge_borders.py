@@ -45,6 +45,9 @@ def _shorten(labels: NDArray[np.int32], graph: FaceGraph, first: int, second: in
     pairs, length = graph.neighbours[inside], graph.length[inside]
     ring = _rings(pairs, labels, len(labels))
     band = np.flatnonzero(ring >= 0)
+    if not len(band):
+        # Another border moved in between, and the two do not touch any more.
+        return
     rims = [_rim(band, ring, labels[band] == label) for label in (first, second)]
     within = (ring[pairs] >= 0).all(axis=1)
     place = np.full(len(labels), -1)

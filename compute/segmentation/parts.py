@@ -1,6 +1,7 @@
 """Parts of a level: labels for the faces and a table of what they are."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from ..errors import LevelError
 from ..mesh import Floats, Ints
 from .arc_tree import ArcTree
+from .borders import Polyline
 from .branches import Branches, repaired_labels
 from .faces import sum_by
 from .hierarchy import Hierarchy
@@ -88,6 +90,20 @@ class Segmentation:
     parts: Parts
     level: int
     warnings: tuple[str, ...] = ()
+    _trace: Callable[[], tuple[Polyline, ...]] | None = field(default=None, repr=False)
+
+    @cached_property
+    def borders(self) -> tuple[Polyline, ...]:
+        """The lines inside the triangles where parts end, made when first asked for.
+
+        Raises
+        ------
+        LevelError
+            If the parts are not those of one level of one field, so that no level sets bound them.
+        """
+        if self._trace is None:
+            raise LevelError("Only the parts of one level have borders inside triangles; these end at edges.")
+        return self._trace()
 
     @cached_property
     def n_parts(self) -> int:

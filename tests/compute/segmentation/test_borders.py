@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compute import TriangleMesh, analyze
+from compute import LevelError, TriangleMesh, analyze, zero_level
 from compute.segmentation.borders import cross_edges
 from compute.segmentation.parts import cut_arcs
 from tests.shapes import icosphere, rectangle, star, torus
@@ -73,6 +73,14 @@ def test_crossings_of_an_edge_are_in_order_and_the_last_arc_is_that_of_the_verte
         part = tree.spread(cuts[number])
         at_end = profile.arcs[number][profile.edges[crossings.edge[last], 1]]
         np.testing.assert_array_equal(part[crossings.arcs[last, number]], part[at_end])
+
+
+def test_a_segmentation_knows_its_borders(tilted_star):
+    mesh, heights = tilted_star
+    segmentation = analyze(mesh, field=heights).segment(level=2)
+    assert {border.part for border in segmentation.borders} == set(segmentation.parts.id.tolist()) - {0}
+    with pytest.raises(LevelError, match="one level"):
+        _ = zero_level(analyze(mesh)).borders
 
 
 def test_a_sphere_has_no_borders():

@@ -29,6 +29,12 @@ def test_a_straight_border_stays():
     np.testing.assert_array_equal(shortened_borders(labels, graph), labels)
 
 
+def test_every_label_stays_somewhere():
+    graph, x, y = strip()
+    labels = np.where(x == 10, np.where(y == 0, 2, 1), np.where(x < 10, 0, 3)).astype(np.int32)
+    assert set(shortened_borders(labels, graph)) == {0, 1, 2, 3}
+
+
 def test_borders_never_get_longer():
     mesh = icosphere(3)
     graph = face_graph(mesh, clean_surface(mesh), np.arange(len(mesh.triangles)))
