@@ -4,6 +4,7 @@ import numpy as np
 
 from ..mesh import Bools, Floats, Ints
 from .arc_tree import ArcTree
+from .faces import sum_by
 from .necks import LEAST_HEIGHT
 
 # An inner part is worth keeping if its border is a neck: shorter than this fraction of its longest level set.
@@ -59,7 +60,19 @@ def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
             is_cut[arc] = tree.roundness[arc] < BLUNT
         if parent >= 0:
             has_cut_inside[parent] |= has_cut_inside[arc] or is_cut[arc]
-    return is_cut
+    return _with_a_body(tree, is_cut, is_cut & has_cut_inside, area)
+
+
+def _with_a_body(tree: ArcTree, is_cut: Bools, is_inner: Bools, area: Floats) -> Bools:
+    """Leave the largest inner part to the body if only a belt would be left of it, as at a waist."""
+    region = tree.spread(np.where(is_cut, np.arange(1, len(area) + 1), 0))
+    size = sum_by(region, area, len(area) + 1)
+    next_to_body = np.flatnonzero(is_inner & (region[tree.parent] == 0))
+    if size[0] >= LEAST_AREA or not len(next_to_body):
+        return is_cut
+    kept = is_cut.copy()
+    kept[next_to_body[size[1 + next_to_body].argmax()]] = False
+    return kept
 
 
 def _numbered(tree: ArcTree, is_cut: Bools) -> Ints:

@@ -87,3 +87,10 @@ def test_the_table_of_a_part_that_was_divided_fits_the_labels(person):
 def test_refuses_to_divide_a_part_that_is_not_there(person, part):
     with pytest.raises(LevelError, match="0 faces"):
         person.segment(within=part)
+
+
+def test_no_belt_is_left_between_chest_and_hips(person):
+    """Chest and hips both end in a neck at the waist; the larger one is body."""
+    nested = person.segment(mode="nested")
+    assert nested.parts.area[0] > 0.05 * nested.parts.area.sum()
+    assert nested.n_parts == 7
