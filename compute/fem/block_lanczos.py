@@ -18,9 +18,10 @@ from ..progress import Progress
 # The first look at the true residuals is worth taking when the recurrence promises this part of the tolerance.
 PROMISED = 0.1
 
-# The basis grows to this many times the number of pairs, plus as many blocks as it takes for few pairs.
-MOST_COLUMNS = 8
-MOST_BLOCKS = 40
+# Room for the basis: this many times the number of pairs, and as many blocks beyond that. Three times the pairs and
+# three blocks are usual.
+MOST_COLUMNS = 4
+MOST_BLOCKS = 16
 
 # Random mixtures of the residuals that are measured instead of all of them.
 N_MIXTURES = 4

@@ -18,9 +18,6 @@ from .space import FunctionSpace, function_space
 # Error of the eigenfunctions, in the sense of `compute.fem.block_lanczos`; eigenvalues have its square.
 TOLERANCE = 1e-6
 
-# Accuracy of the linear eigenvalues that a higher order starts from; their own discretization error is larger.
-START_TOLERANCE = 1e-4
-
 # Below this many unknowns ARPACK is as fast as the block iteration with its linear start.
 BLOCK_UNKNOWNS = 5000
 
@@ -118,11 +115,11 @@ def lowest_eigenpairs(
         If the iteration does not converge.
     """
     if problem.space.element.order == 1 or problem.is_free.sum() < BLOCK_UNKNOWNS:
-        return _plain_eigenpairs(problem, n_pairs, 0.0, progress)
+        return _plain_eigenpairs(problem, n_pairs, progress)
     n_linear = n_pairs + N_EXTRA
     if n_linear > DENSE_SHARE * problem.linear.is_free.sum():
-        return _plain_eigenpairs(problem, n_pairs, 0.0, progress)
-    values, functions = _plain_eigenpairs(problem.linear, n_linear, START_TOLERANCE, section(progress, 0.0, 0.15))
+        return _plain_eigenpairs(problem, n_pairs, progress)
+    values, functions = _plain_eigenpairs(problem.linear, n_linear, section(progress, 0.0, 0.15))
     # One function more than needed shows that none is missing.
     n_needed = int((values <= LINEAR_EXCESS * largest_ratio * values[n_constant]).sum()) + 1
     n_pairs = min(n_pairs, n_needed)
@@ -142,9 +139,7 @@ def _mixture(n_functions: int, width: int) -> Floats:
     return np.random.default_rng(0).standard_normal((n_functions, width))
 
 
-def _plain_eigenpairs(
-    problem: EigenProblem, n_pairs: int, tolerance: float, progress: Progress
-) -> tuple[Floats, Floats]:
+def _plain_eigenpairs(problem: EigenProblem, n_pairs: int, progress: Progress) -> tuple[Floats, Floats]:
     """Return the lowest eigenpairs from ARPACK or, if there are few unknowns, from full matrices."""
     unknowns = problem.elimination_order
     stiffness, mass = problem.matrices(unknowns)
@@ -154,9 +149,7 @@ def _plain_eigenpairs(
         return values, functions
     progress(0.0, "Factoring")
     factor = factored(stiffness, mass)
-    values, functions[unknowns] = arpack_eigenpairs(
-        stiffness, mass, factor, n_pairs, tolerance, section(progress, 0.3, 1.0)
-    )
+    values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, section(progress, 0.3, 1.0))
     return values, functions
 
 
@@ -176,5 +169,5 @@ def _block_eigenpairs(
     try:
         values, functions[unknowns] = smallest_eigenpairs(pencil, start[unknowns], n_pairs, TOLERANCE, progress)
     except (SpectrumError, np.linalg.LinAlgError):
-        values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, 0.0, progress)
+        values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, progress)
     return values, functions

@@ -37,7 +37,7 @@ def factored(stiffness: csr_array, mass: csr_array) -> SuperLU:
 
 
 def arpack_eigenpairs(
-    stiffness: csr_array, mass: csr_array, factor: SuperLU, n_pairs: int, tolerance: float, progress: Progress
+    stiffness: csr_array, mass: csr_array, factor: SuperLU, n_pairs: int, progress: Progress
 ) -> tuple[Floats, Floats]:
     """Return the smallest eigenvalues, ascending, and their functions, orthonormal in the mass.
 
@@ -48,8 +48,6 @@ def arpack_eigenpairs(
     factor : SuperLU
         Of the shifted operator.
     n_pairs : int
-    tolerance : float
-        Relative accuracy of the eigenvalues; 0 is round-off.
 
     Raises
     ------
@@ -68,7 +66,8 @@ def arpack_eigenpairs(
     inverse = LinearOperator(stiffness.shape, matvec=solve, dtype=np.float64)
     start = np.random.default_rng(0).standard_normal(stiffness.shape[0])
     try:
-        values, functions = eigsh(stiffness, n_pairs, mass, sigma=SHIFT, v0=start, OPinv=inverse, tol=tolerance)
+        # No tolerance but round-off: with a looser one ARPACK misses copies of multiple eigenvalues.
+        values, functions = eigsh(stiffness, n_pairs, mass, sigma=SHIFT, v0=start, OPinv=inverse)
     except ArpackError as error:
         raise SpectrumError(f"The {n_pairs} eigenfunctions did not converge; repair slivers or remesh.") from error
     by_value = np.argsort(values)
