@@ -100,11 +100,13 @@ class _Cut:
     def faces(self) -> CutFaces:
         """Return what was cut."""
         self._edited.faces.index_update()
-        found = [face for pieces in self._pieces for face in pieces]
+        arcs = {face: self._arcs_of_face(face) for pieces in self._pieces for face in pieces}
+        # A piece between borders alone, in a corner where three parts meet, stays what its polygon was.
+        found = [face for face in arcs if arcs[face]]
         origin = {piece.index: pieces[0].index for pieces in self._pieces for piece in pieces[1:]}
         return CutFaces(
             np.array([face.index for face in found], dtype=np.int64),
-            np.array([self._arcs_of_face(face) for face in found], dtype=np.int64).reshape(len(found), -1),
+            np.array([arcs[face] for face in found], dtype=np.int64).reshape(len(found), self._arcs_of_vertex.shape[1]),
             np.array([origin[face] for face in range(self._n_faces, len(self._edited.faces))], dtype=np.int64),
         )
 
@@ -143,7 +145,7 @@ class _Cut:
         return tuple(self._arcs_of_vertex[vertex.index].tolist())
 
     def _arcs_of_face(self, face: bmesh.types.BMFace) -> Arcs:
-        """Return the arcs that the longest part of a face's outline lies on; borders inside polygons do not count."""
+        """Return the arcs that most of a face's outline lies on, none if it consists of borders inside the polygon."""
         # Blender gives no number to what was made during the cut.
         lengths: Counter[Arcs] = Counter()
         for edge in face.edges:
@@ -151,7 +153,7 @@ class _Cut:
                 lengths[self._arcs_of_piece[edge]] += edge.calc_length()
             elif edge.index >= 0:
                 lengths[self._arcs_at(edge.verts[0])] += edge.calc_length()
-        return max(lengths, key=lengths.__getitem__)
+        return max(lengths, key=lengths.__getitem__, default=())
 
 
 def _split_between(pieces: list[bmesh.types.BMFace], start: bmesh.types.BMVert, stop: bmesh.types.BMVert) -> None:
