@@ -22,7 +22,6 @@ from compute.fem.space import function_space
 from compute.mesh import Floats
 from compute.msc.links import links_of
 from compute.msc.morse_smale import FieldTopology
-from compute.msc.morse_smale import FieldTopology
 from compute.segmentation.hierarchy import build_hierarchy
 from examples import humanoid
 
