@@ -1,0 +1,55 @@
+"""The iteration on matrices that are known, and its refusal to believe a bad factor."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_array, diags_array, eye_array
+from scipy.sparse.linalg import splu
+
+from compute.errors import SpectrumError
+from compute.fem import eigensolver
+from compute.fem.block_lanczos import Pencil, smallest_eigenpairs
+from compute.fem.eigenbasis import solve_eigenbasis
+from compute.progress import silent
+from tests.shapes import icosphere
+
+SHIFT = -0.01
+
+
+def ring_of_springs(n):
+    """Return the stiffness of n unit masses on a ring of unit springs."""
+    one = np.ones(n - 1)
+    ring = diags_array([2 * np.ones(n), -one, -one, [-1.0], [-1.0]], offsets=[0, 1, -1, n - 1, 1 - n])
+    return csr_array(ring)
+
+
+def pencil_of(stiffness, scale=1.0):
+    mass = csr_array(eye_array(stiffness.shape[0]))
+    factor = splu((stiffness - SHIFT * mass).tocsc())
+    return Pencil(stiffness, mass, SHIFT, lambda columns: scale * factor.solve(columns))
+
+
+def test_ring_of_springs():
+    """A ring of n unit springs has eigenvalues 2 - 2 cos(2 pi j / n), all but the first twice."""
+    start = np.random.default_rng(0).standard_normal((600, 3))
+    values, functions = smallest_eigenpairs(pencil_of(ring_of_springs(600)), start, 9, 1e-6, silent)
+    j = np.array([0, 1, 1, 2, 2, 3, 3, 4, 4])
+    np.testing.assert_allclose(values, 2 - 2 * np.cos(2 * np.pi * j / 600), atol=1e-12)
+    np.testing.assert_allclose(functions.T @ functions, np.eye(9), atol=1e-9)
+
+
+@pytest.mark.parametrize("scale", [0.5, 1e-6])
+def test_a_factor_that_lies_is_not_believed(scale):
+    """With a scaled inverse the recurrence converges all the same, to other values."""
+    start = np.random.default_rng(0).standard_normal((600, 3))
+    with pytest.raises((SpectrumError, np.linalg.LinAlgError)):
+        smallest_eigenpairs(pencil_of(ring_of_springs(600), scale), start, 5, 1e-6, silent)
+
+
+def test_where_the_iteration_fails_arpack_answers(monkeypatch):
+    expected = solve_eigenbasis(icosphere(3), 8).values
+
+    def fail(*_):
+        raise SpectrumError("no")
+
+    monkeypatch.setattr(eigensolver, "smallest_eigenpairs", fail)
+    np.testing.assert_allclose(solve_eigenbasis(icosphere(3), 8).values, expected, rtol=1e-9)
