@@ -66,10 +66,11 @@ class EIGENPARTS_OT_analyze(AnalysisOptions, BackgroundOperator, bpy.types.Opera
         return partial(analyze_arrays, arrays, self._options(mesh)), ticket
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
-        mesh = _find_mesh(ticket)
+        mesh = find_mesh(ticket)
         state.store(mesh, outcome.stored, outcome.source, outcome.description)
         labels = results.segment_mesh(mesh)
         show_vertex_colours(context)
+        context.window_manager.eigenparts.problem = ""
         for warning in (*outcome.warnings, *labels.warnings):
             self.report({"WARNING"}, warning)
         self.report({"INFO"}, _told(len(labels.parts), outcome.seconds))
@@ -113,7 +114,8 @@ def _described(options: dict[str, Any]) -> str:
     return "Diffusion" if isinstance(field, str) else "Own values"
 
 
-def _find_mesh(ticket: Ticket) -> bpy.types.Mesh:
+def find_mesh(ticket: Ticket) -> bpy.types.Mesh:
+    """Return the mesh that a result belongs to, if it is still as it was."""
     mesh = next((mesh for mesh in bpy.data.meshes if mesh.session_uid == ticket.session_uid), None)
     if mesh is None:
         raise Refusal("The mesh was deleted while it was analyzed.")

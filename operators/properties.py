@@ -209,6 +209,7 @@ class EigenpartsJobStatus(bpy.types.PropertyGroup):
     text: StringProperty(options={"SKIP_SAVE"})
     shown: StringProperty(options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
+    problem_of: StringProperty(description="Name of the mesh that has the problem", options={"SKIP_SAVE"})
 
 
 def _summary_value(settings: EigenpartsMeshSettings, name: str) -> int:
@@ -228,7 +229,7 @@ def _segment(mesh: bpy.types.Mesh, **choice: Any) -> None:
 def _told(mesh: bpy.types.Mesh, action: Callable[..., Any], *arguments: Any) -> Any:
     """Do something to a mesh at once; a property cannot report, so the panel tells what went wrong."""
     status = bpy.context.window_manager.eigenparts
-    status.problem = ""
+    status.problem, status.problem_of = "", mesh.name_full
     try:
         return action(mesh, *arguments)
     except (Refusal, engine.EngineError) as error:

@@ -47,8 +47,9 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
         else:
             _draw_level(self.layout, mesh, summary)
             _draw_parts(self.layout, mesh)
-        if problem := context.window_manager.eigenparts.problem:
-            _draw_sentence(self.layout, problem, context.region.width)
+        status = context.window_manager.eigenparts
+        if status.problem and status.problem_of == mesh.name_full:
+            _draw_sentence(self.layout, status.problem, context.region.width)
         self.layout.operator("eigenparts.clear", icon="TRASH")
 
 
@@ -67,6 +68,7 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
         softness.prop(settings, "softness")
         column.prop(settings, "materials")
         column.prop(settings, "field")
+        column.operator("eigenparts.write_eigenfunctions", text="Eigenfunctions")
         column = self.layout.column(align=True)
         cuts = column.row(align=True)
         cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN").method = "INSERT"

@@ -70,8 +70,8 @@ def test_the_panel_says_what_the_slider_cannot(analyzed):
     analyzed.data.vertices[7].co.x += 0.01
     analyzed.data.eigenparts.level = 1
     assert "changed after it was analyzed" in bpy.context.window_manager.eigenparts.problem
+    assert bpy.context.window_manager.eigenparts.problem_of == analyzed.data.name_full
     bpy.ops.eigenparts.analyze()
-    analyzed.data.eigenparts.level = 1
     assert bpy.context.window_manager.eigenparts.problem == ""
 
 
