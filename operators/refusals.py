@@ -7,7 +7,6 @@ import bpy
 
 from . import engine
 
-
 IN_EDIT_MODE = "Leave edit mode first; results are written to the mesh as a whole."
 
 
