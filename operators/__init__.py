@@ -14,6 +14,7 @@ register, unregister = bpy.utils.register_submodule_factory(
         "plot_diagram",
         "trace_complex",
         "write_outputs",
+        "write_eigenfunctions",
         "cut",
         "separate",
     ],

@@ -20,6 +20,7 @@ _HOME = {
     "Parts": "segmentation.parts",
     "EdgeProfile": "segmentation.profile",
     "label_branches": "segmentation.parts",
+    "solve_eigenbasis": "fem.eigenbasis",
     "vertex_heights": "segmentation.profile",
     "cut_arcs": "segmentation.parts",
     "label_behind": "segmentation.parts",

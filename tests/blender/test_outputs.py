@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from compute import TriangleMesh, solve_eigenbasis
 from tests.blender.conftest import add_object, everything_on, values_of
 
 
@@ -132,3 +133,19 @@ def test_outputs_need_an_analysis(star):
     add_object(star.vertices, star.triangles)
     with pytest.raises(RuntimeError, match="Analyze the mesh first"):
         write("FACE_SETS")
+
+
+def test_eigenfunctions_are_those_of_the_engine(star_object, star):
+    bpy.ops.eigenparts.write_eigenfunctions(n_functions=4)
+    bpy.ops.eigenparts.write_eigenfunctions(n_functions=3)
+    basis = solve_eigenbasis(TriangleMesh(np.float32(star.vertices), star.triangles), 3)
+    written = [values_of(star_object.data, f"eigenfunction_{k}", dtype=np.float32) for k in (1, 2, 3)]
+    np.testing.assert_allclose(np.stack(written, axis=1), basis.functions[: len(star.vertices)], atol=1e-5)
+    assert "eigenfunction_4" not in star_object.data.attributes
+
+
+def test_an_eigenfunction_attribute_of_the_user_is_not_overwritten(star_object):
+    star_object.data.attributes.new("eigenfunction_2", "FLOAT", "POINT")
+    with pytest.raises(RuntimeError, match="not from Eigenparts"):
+        bpy.ops.eigenparts.write_eigenfunctions()
+    assert "eigenfunction_1" not in star_object.data.attributes
