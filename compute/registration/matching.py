@@ -23,7 +23,7 @@ EFFORTS = (
     Effort(levels=(6, 8, 10, 12, 14, 16), n_seeds=16, n_branches=2, n_kept=10, n_refined=10),
 )
 # A matching at least this sure is not searched for any further.
-SURE = 0.9
+SURE = 0.75
 MAX_ALTERNATIVES = 3
 # Signs can be given for the functions that hypotheses are made of; the rest follows from them.
 FLIPPABLE = max(EFFORTS[0].levels)

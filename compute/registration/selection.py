@@ -8,7 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..mesh import Floats, Ints
-from .hypotheses import Hypotheses
+from .hypotheses import Hypotheses, nearest_orthogonal, spectrum_of
+from .moments import agreement
 from .spectral_shape import SpectralShape
 from .zoomout import nearest_points, sample_functions, with_constant, zoom_out
 
@@ -16,10 +17,9 @@ from .zoomout import nearest_points, sample_functions, with_constant, zoom_out
 SAME_MAP = 0.3
 JUDGED_FUNCTIONS = 10
 # Cost and relative distance to the next best at which doubt begins: among 400 pairs of poses all below were right.
-DOUBTFUL_COST = 1.5e-4
-TIE_POWER = 4
+DOUBTFUL_COST = 3e-6
 # Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
-LEAST_COST = 1e-6
+LEAST_COST = 2e-9
 # Neighbouring points that land more than this many times farther apart are torn from each other.
 TORN = 3.0
 # What no map does without: at 1000 samples single points near thin features always are.
@@ -42,7 +42,8 @@ class Candidate:
     nearest : (s,) int64
         For each of the target's samples, the source's sample (its place in ``samples``) that it is mapped to.
     symmetric, alternating : float
-        Agreement of the moments, 1 at best.
+        Agreement of the moments after refinement, 1 at best: of all that is measured here, the one that separates
+        right from wrong most often.
     commutation : float
         How far the map is from commuting with the Laplace operator: 0 for an isometry.
     orientation : float
@@ -67,8 +68,8 @@ class Candidate:
     @cached_property
     def cost(self) -> float:
         """Small for good maps; the factors are what separates right from wrong on posed characters."""
-        moments = 3 - self.symmetric - self.alternating
-        geometry = (2 - self.orientation) * (1.05 - self.curvature) * (USUAL_TEARING + self.tearing) ** 1.5
+        moments = (1.02 - self.symmetric) * (1.02 - self.alternating)
+        geometry = (2 - self.orientation) * (1.05 - self.curvature) * (USUAL_TEARING + self.tearing)
         return self.commutation * moments * geometry
 
     @property
@@ -92,7 +93,7 @@ def confidence_of(candidate: Candidate, rivals: Sequence[Candidate]) -> float:
     """Return 0 to 1: low where a candidate is costly, or where a different one is as good."""
     others = [rival.cost for rival in rivals if _difference(candidate, rival) > SAME_MAP and not rival.rank[0]]
     tie = min((candidate.cost + LEAST_COST) / (min(others, default=np.inf) + LEAST_COST), 1.0)
-    return fit_of(candidate) * (1 - tie**TIE_POWER)
+    return fit_of(candidate) * (1 - tie)
 
 
 def fit_of(candidate: Candidate) -> float:
@@ -113,6 +114,7 @@ class Judge:
         self._source, self._target, self._sizes = source, target, sizes
         self._source_samples = sample_functions(source.functions[source.samples], ())
         self._target_samples = sample_functions(target.functions[target.samples], sizes)
+        self._spectra = spectrum_of(source), spectrum_of(target)
         last = max(sizes)
         self._embedding = source.project(source.positions)[:last]
         self._neighbours = _neighbours(target)
@@ -120,17 +122,23 @@ class Judge:
 
     def judge(self, found: Hypotheses) -> list[Candidate]:
         """Return a candidate for each hypothesis, in their order."""
-        rows = zip(found.maps, found.symmetric.tolist(), found.alternating.tolist(), strict=True)
-        return [self._candidate(*row) for row in rows]
+        return [self._candidate(start) for start in found.maps]
 
-    def _candidate(self, start: Floats, symmetric: float, alternating: float) -> Candidate:
+    def _candidate(self, start: Floats) -> Candidate:
         here, there = self._source_samples, self._target_samples
         grown = zoom_out(with_constant(start), here, there, self._sizes)
         nearest = nearest_points(grown, here.functions, there.functions)
         return Candidate(
-            start, grown, nearest, symmetric, alternating,
+            start, grown, nearest, *self._moments(grown, len(start)),
             self._commutation(grown), self._orientation(grown), self._curvature(nearest), self._tearing(nearest),
         )  # fmt: skip
+
+    def _moments(self, grown: Floats, level: int) -> tuple[float, float]:
+        """Return how far the moments agree under the refined map, made orthogonal, of a hypothesis' functions."""
+        rotation = nearest_orthogonal(grown[1 : level + 1, 1 : level + 1])
+        here, there = (spectrum.moments.damped(spectrum.values[:level]) for spectrum in self._spectra)
+        symmetric = agreement(rotation, here.symmetric, there.symmetric)
+        return float(symmetric), float(agreement(rotation, here.alternating, there.alternating))
 
     def _commutation(self, grown: Floats) -> float:
         source, target = self._source.values[: grown.shape[1]], self._target.values[: grown.shape[0]]
