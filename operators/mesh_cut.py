@@ -14,8 +14,8 @@ import numpy as np
 
 from . import engine
 
-# Crossings of one edge that are nearer to each other than this fraction of it are one vertex.
-SAME_PLACE = 1e-4
+# Crossings of one edge that are nearer to each other than this fraction of it are one vertex: no slivers.
+SAME_PLACE = 0.05
 
 Arcs = tuple[int, ...]
 
@@ -83,19 +83,25 @@ class _Cut:
             [(loop.edge.index, loop.vert is not loop.edge.verts[0]) for loop in face.loops] for face in self._crossed
         ]
         self._vertex_of_row: dict[int, bmesh.types.BMVert] = {}
+        self._vertices_of_edge: dict[int, set[bmesh.types.BMVert]] = {}
         self._arcs_of_piece: dict[bmesh.types.BMEdge, Arcs] = {}
         self._pieces = [[face] for face in self._crossed]
 
     def split_edges(self) -> None:
         """Put a vertex on every crossing, and remember what each piece of an edge lies on."""
         for number, edge in self._edges.items():
+            ends = set(edge.verts)
             self._split_edge(edge, self._rows[number])
+            self._vertices_of_edge[number] = ends.union(self._vertex_of_row[row] for row in self._rows[number])
 
     def split_faces(self) -> None:
         """Join the crossings of each border through the polygons."""
         for pieces, outline in zip(self._pieces, self._outlines, strict=True):
             for start, stop in self._chords(outline):
-                _split_between(pieces, self._vertex_of_row[start], self._vertex_of_row[stop])
+                ends = {self._vertex_of_row[start], self._vertex_of_row[stop]}
+                # A border that was snapped to an edge from both sides runs along it.
+                if not any(ends <= self._vertices_of_edge.get(edge, set()) for edge, _ in outline):
+                    _split_between(pieces, ends)
 
     def faces(self) -> CutFaces:
         """Return what was cut."""
@@ -156,9 +162,10 @@ class _Cut:
         return max(lengths, key=lengths.__getitem__, default=())
 
 
-def _split_between(pieces: list[bmesh.types.BMFace], start: bmesh.types.BMVert, stop: bmesh.types.BMVert) -> None:
-    """Split the piece of a polygon that has both vertices, unless they are the same or an edge joins them."""
-    if start is stop or any(stop in edge.verts for edge in start.link_edges):
+def _split_between(pieces: list[bmesh.types.BMFace], ends: set[bmesh.types.BMVert]) -> None:
+    """Split the piece of a polygon that has both vertices, unless an edge joins them."""
+    start, stop = ends
+    if any(stop in edge.verts for edge in start.link_edges):
         return
     face = next((piece for piece in pieces if start in piece.verts and stop in piece.verts), None)
     if face is not None:

@@ -115,3 +115,34 @@ def test_names_that_make_no_sense_are_passed_over(analyzed):
     assert titles(analyzed)[0] == "Body"
     assert all(title.startswith("Part") for part, title in titles(analyzed).items() if part)
     assert rows(analyzed)[3].color == before
+
+
+def named_arm(obj):
+    rows(obj)[2].title = "Arm"
+    rows(obj)[2].color = (0.25, 0.5, 0.75)
+
+
+def test_names_and_colours_survive_saving_and_loading(analyzed, tmp_path):
+    named_arm(analyzed)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "star.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "star.blend"))
+    loaded = bpy.data.objects["star"]
+    assert titles(loaded)[2] == "Arm"
+    assert tuple(rows(loaded)[2].color) == (0.25, 0.5, 0.75)
+
+
+def test_a_copy_has_names_of_its_own(analyzed):
+    named_arm(analyzed)
+    copy = bpy.data.objects.new("copy", analyzed.data.copy())
+    rows(copy)[2].title = "Leg"
+    assert (titles(analyzed)[2], titles(copy)[2]) == ("Arm", "Leg")
+
+
+def test_undo_brings_the_name_before_back(analyzed):
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.ed.undo_push(message="analyzed")
+        named_arm(analyzed)
+        bpy.ops.ed.undo_push(message="named")
+        bpy.ops.ed.undo()
+    assert titles(bpy.data.objects["star"])[2] == "Part 2"
