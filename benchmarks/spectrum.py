@@ -81,7 +81,7 @@ def sizes(options: argparse.Namespace) -> list[dict]:
     meshes = [("bumpy sphere", bumpy_sphere(size)) for size in options.sizes]
     character = _character(options)
     if character:
-        meshes.append(character)
+        meshes += [character, (f"{character[0]}, subdivided", subdivide(character[1]))]
     rows = []
     for name, mesh in meshes:
         for n_pairs in options.pairs:
