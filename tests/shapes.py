@@ -70,7 +70,7 @@ def torus(n_around: int = 24, n_through: int = 12, radius: float = 3.0, thicknes
 def star(n_arms: int = 5, n_subdivisions: int = 4, length: float = 1.5) -> TriangleMesh:
     """Return a sphere with tapering arms in the plane z = 0, the first along x; all arms a little different."""
     sphere = icosphere(n_subdivisions)
-    x, y, z = sphere.vertices.T
+    x, y, _ = sphere.vertices.T
     radius = np.ones(len(x))
     for arm in range(n_arms):
         angle = 2 * np.pi * arm / n_arms
