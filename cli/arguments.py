@@ -33,6 +33,12 @@ def _add_segment(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
     choice.add_argument("--level", metavar="N", type=int, help="how many features to keep")
     choice.add_argument("--threshold", metavar="X", type=float, help="least height of a feature, as a fraction")
     choice.add_argument("--parts", metavar="N", type=int, dest="n_parts", help="how many parts, the body included")
+    command.add_argument(
+        "--mode",
+        choices=["nested", "features"],
+        default="nested",
+        help="parts inside parts (default), or only what stands out at this level",
+    )
     command.add_argument("--output", metavar="DIR", type=Path, help="folder for results; otherwise beside each file")
     command.add_argument("--json", action="store_true", help="print the report as JSON")
     command.set_defaults(run=segment.run)

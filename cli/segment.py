@@ -82,7 +82,7 @@ def _divide_object(obj: bpy.types.Object, options: argparse.Namespace) -> dict[s
     state.store(mesh, outcome.stored, outcome.source, outcome.description)
     choice = {name: getattr(options, name) for name in ("level", "threshold", "n_parts")}
     given = {name: value for name, value in choice.items() if value is not None}
-    labels = results.segment_mesh(mesh, mode="features", **given)
+    labels = results.segment_mesh(mesh, mode=options.mode, **given)
     return {
         "name": obj.name,
         "level": labels.level,

@@ -87,6 +87,17 @@ def test_the_report_adds_up(run, star_off, tmp_path):
     assert sum(part["area"] for part in row["parts"]) == pytest.approx(mesh.areas.sum(), rel=1e-5)
 
 
+@pytest.mark.parametrize(("mode", "n_parts"), [("nested", 3), ("features", 4)])
+def test_the_mode_decides_about_blunt_ends(run, tmp_path, mode, n_parts):
+    """A ball with two arms, a bump, and nothing else: the bump is a feature, but it does not stand out."""
+    mesh = star(2, 4)
+    bump = np.exp(-6 * (1 - icosphere(4).vertices[:, 2]))
+    add_object(TriangleMesh(mesh.vertices * (1 + 0.5 * bump[:, None]), mesh.triangles))
+    EXPORTERS[".ply"](str(tmp_path / "bumpy.ply"))
+    _, report, _ = run("segment", tmp_path / "bumpy.ply", "--threshold", 1e-3, "--mode", mode, "--json")
+    assert len(report["files"][0]["objects"][0]["parts"]) == n_parts
+
+
 def test_one_bad_file_does_not_stop_the_rest(run, star_off, tmp_path):
     broken = tmp_path / "broken.off"
     broken.write_text("OFF\n3 1 0\n0 0 0\n")
