@@ -77,12 +77,15 @@ def _slot(mesh: bpy.types.Mesh, part: int) -> int:
 
 
 def _dress(material: bpy.types.Material, name: str, colour: list[float]) -> None:
-    """Give a material name and colour, leaving alone what the user made of its nodes."""
+    """Give a material name and colour, in solid view and, from Blender 5 on where all have nodes, in its shader."""
     # Blender may have added a number because the name was taken.
     if material.name.rpartition(".")[0] != name and material.name != name:
         material.name = name
     if list(material.diffuse_color) != colour:
         material.diffuse_color = colour
+        shader = material.node_tree.nodes.get("Principled BSDF") if material.node_tree else None
+        if shader is not None:
+            shader.inputs["Base Color"].default_value = colour
 
 
 def _assign(mesh: bpy.types.Mesh, slots: np.ndarray) -> None:
