@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_array
+from scipy.sparse.linalg import SuperLU
 
 from ..errors import SpectrumError
 from ..mesh import Bools, Floats, Ints
@@ -12,7 +13,7 @@ from ..progress import Progress, section
 from .assembly import Metric, assemble, element_mass, element_stiffness, metric
 from .block_lanczos import Pencil, smallest_eigenpairs
 from .ordering import bisect_triangles, elimination_order
-from .shift_invert import SHIFT, arpack_eigenpairs, dense_eigenpairs, factored
+from .shift_invert import SHIFT, arpack_eigenpairs, dense_eigenpairs, factored_as_ordered, factored_by_columns
 from .space import FunctionSpace, function_space
 
 # Error of the eigenfunctions, in the sense of `compute.fem.block_lanczos`; eigenvalues have its square.
@@ -46,22 +47,19 @@ class EigenProblem:
         N unknowns.
     is_free : (N,) bool
         Which unknowns are solved for; the functions are zero at the others.
-    codes : (T,) int64
-        Leaves of the nested dissection, see `compute.fem.ordering`.
     metric : Metric
         Shape of the triangles.
     """
 
     space: FunctionSpace
     is_free: Bools
-    codes: Ints
     metric: Metric
 
     @cached_property
     def linear(self) -> "EigenProblem":
         """The same with linear elements."""
         space = function_space(self.space.mesh, 1)
-        return EigenProblem(space, self.is_free[: space.n_unknowns], self.codes, self.metric)
+        return EigenProblem(space, self.is_free[: space.n_unknowns], self.metric)
 
     def element_matrices(self) -> tuple[Floats, Floats]:
         """Return (T, n, n) stiffness and mass of each triangle."""
@@ -69,9 +67,16 @@ class EigenProblem:
 
     @cached_property
     def elimination_order(self) -> Ints:
-        """The free unknowns in an order of elimination that keeps factors sparse."""
-        unknowns = elimination_order(self.space.elements, self.codes, self.space.n_unknowns)
+        """The free unknowns, for higher orders in an order of elimination that keeps factors sparse."""
+        if self.space.element.order == 1:
+            return np.flatnonzero(self.is_free)
+        unknowns = elimination_order(self.space.elements, bisect_triangles(self.space.mesh), self.space.n_unknowns)
         return unknowns[self.is_free[unknowns]]
+
+    def factored(self, stiffness: csr_array, mass: csr_array) -> SuperLU:
+        """Return the factor of the shifted operator, given the matrices in the order of elimination."""
+        is_ordered = self.space.element.order > 1
+        return factored_as_ordered(stiffness, mass) if is_ordered else factored_by_columns(stiffness, mass)
 
     def matrices(self, unknowns: Ints) -> tuple[csr_array, csr_array]:
         """Return stiffness and mass of some unknowns, in their order."""
@@ -84,7 +89,7 @@ class EigenProblem:
 
 def eigen_problem(space: FunctionSpace, is_free: Bools) -> EigenProblem:
     """Return the eigenvalue problem for the free unknowns of a space."""
-    return EigenProblem(space, is_free, bisect_triangles(space.mesh), metric(space.mesh))
+    return EigenProblem(space, is_free, metric(space.mesh))
 
 
 def lowest_eigenpairs(
@@ -148,7 +153,7 @@ def _plain_eigenpairs(problem: EigenProblem, n_pairs: int, progress: Progress) -
         values, functions[unknowns] = dense_eigenpairs(stiffness, mass, n_pairs)
         return values, functions
     progress(0.0, "Factoring")
-    factor = factored(stiffness, mass)
+    factor = problem.factored(stiffness, mass)
     values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, section(progress, 0.3, 1.0))
     return values, functions
 
@@ -162,7 +167,7 @@ def _block_eigenpairs(
     start[space.elements] = space.element.barycentric @ linear_start[space.mesh.triangles]
     stiffness, mass = problem.matrices(unknowns)
     progress(0.05, "Factoring")
-    factor = factored(stiffness, mass)
+    factor = problem.factored(stiffness, mass)
     pencil = Pencil(stiffness, mass, SHIFT, factor.solve)
     functions = np.zeros((space.n_unknowns, n_pairs))
     progress = section(progress, 0.4, 1.0)
