@@ -17,5 +17,8 @@ register, unregister = bpy.utils.register_submodule_factory(
         "write_eigenfunctions",
         "cut",
         "separate",
+        "register_selected",
+        "flip_function",
+        "next_alternative",
     ],
 )

@@ -101,10 +101,17 @@ def analyze_arrays(
     start = time.perf_counter()
     mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
     analysis = engine.analyze(mesh, **options, progress=progress)
+    return outcome_of(analysis, arrays, options, time.perf_counter() - start)
+
+
+def outcome_of(
+    analysis: "engine.Analysis", arrays: exchange.MeshArrays, options: dict[str, Any], seconds: float
+) -> Outcome:
+    """Return what of an analysis is left for the mesh; knows nothing of Blender either."""
     stored = state.StoredAnalysis(analysis.hierarchy, analysis.branches(arrays.polygon_of_triangle))
     heights = engine.vertex_heights(analysis.surface, analysis.field)
     source = state.BorderSource(analysis.profile(arrays.edges), heights, analysis.closing_heights)
-    return Outcome(stored, source, _described(options), analysis.warnings, time.perf_counter() - start)
+    return Outcome(stored, source, _described(options), analysis.warnings, seconds)
 
 
 def _described(options: dict[str, Any]) -> str:

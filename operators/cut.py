@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from . import engine, results, state
+from . import engine, registered, results, state
 from .exchange import read_mesh, read_own_integers
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
@@ -36,6 +36,7 @@ class EIGENPARTS_OT_cut(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         with refusals_told(self):
+            registered.refuse_registered(context.object.data)
             n_before = len(context.object.data.polygons)
             if self.method == "INSERT":
                 insert_borders(context.object)

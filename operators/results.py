@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from . import engine, outputs, part_table, state
+from . import engine, outputs, part_table, registered, state
 from .division import Division
 from .exchange import OwnAttribute, read_own_integers, refuse_foreign, write_attribute
 
@@ -29,14 +29,22 @@ def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: flo
     analysis = state.load(mesh)
     mode = mode or state.mode_of(mesh)
     labels = engine.label_branches(analysis.hierarchy, analysis.branches, mode=mode, **choice)
-    of_faces = labels.of_faces(analysis.branches)
+    registered.take_back(mesh)
+    show_labels(mesh, labels, analysis.branches, mode)
+    return labels
+
+
+def show_labels(
+    mesh: bpy.types.Mesh, labels: "engine.BranchLabels", branches: tuple["engine.Branches", ...], mode: str
+) -> None:
+    """Write parts to an analyzed mesh, and everything that follows them."""
+    of_faces = labels.of_faces(branches)
     write_attribute(mesh, PART, of_faces)
     state.remember_segmentation(mesh, labels, mode)
     part_table.number_parts(mesh, labels.parts)
     _list_parts(mesh, labels.parts)
     outputs.write(mesh, _division(mesh, of_faces))
     mesh.update()
-    return labels
 
 
 def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness: float | None = None) -> None:

@@ -42,7 +42,8 @@ EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vecto
 ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS)
 # What outlives a new analysis: choices of the user, and what is known of the parts as long as they are the same.
 CHOICES = ("mode", "outputs", "softness")
-OF_PARTS = ("part_numbers", "part_names", "part_colours")
+REGISTRATION = "registration"  # only while the mesh shows the parts of another
+OF_PARTS = ("part_numbers", "part_names", "part_colours", REGISTRATION)
 # How levels are read, the default first.
 MODES = ("nested", "features")
 

@@ -14,7 +14,7 @@ MAY_IMPORT = {
     "compute": set(),
     "operators": {"compute"},
     "cli": {"compute", "operators"},
-    "ui": {"operators.state", "operators.palette"},
+    "ui": {"operators.state", "operators.palette", "operators.registered"},
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},

@@ -1,0 +1,30 @@
+"""Operator: register an object again with the other sign of one matched function."""
+
+import bpy
+from bpy.props import IntProperty
+
+from .refusals import Refusal
+from .registered import Match
+from .registering_again import RegistersAgain, given_flips
+from .registration import SHOWN_FUNCTIONS, Wish
+
+
+class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
+    """Register the object again with the other sign of this function; both meshes are analyzed anew for it"""
+
+    bl_idname = "eigenparts.flip_function"
+    bl_label = "Flip Function"
+    bl_options = {"UNDO"}
+
+    number: IntProperty(
+        name="Function", description="Of the reference, from the smoothest", default=1, min=1, max=SHOWN_FUNCTIONS
+    )
+
+    def wish(self, match: Match) -> Wish:
+        if self.number > len(match.signs):
+            raise Refusal(f"Function {self.number} was not matched; there are {len(match.signs)}.")
+        sign = -match.signs[self.number - 1]
+        return Wish(flips={**given_flips(match), self.number: sign}, mirrored=match.mirrored)
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_flip_function,))

@@ -1,0 +1,58 @@
+"""Operator: give all selected meshes the parts of the active one."""
+
+from collections.abc import Callable
+
+import bpy
+from bpy.props import BoolProperty
+
+from . import background
+from .fresh_analysis import FreshAnalysis
+from .refusals import Refusal, can_use_active_mesh
+from .registering import SETTINGS, Registers, Tickets
+from .registration import Registration, Wish
+
+NOTHING_ELSE = "Select the meshes to register, and last the one that has the parts."
+
+
+class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operator):
+    """Give all selected meshes the parts of the active one: the same numbers, names and colors.
+
+    Moving the level of one of them afterwards divides it anew by its own features
+    """
+
+    bl_idname = "eigenparts.register_selected"
+    bl_label = "Register Selected"
+    bl_options = {"UNDO"}
+
+    mirrored: BoolProperty(
+        name="Mirrored",
+        description="The meshes are mirror images, such as a left hand and a right one; not needed where only the"
+        " scale of an object mirrors it",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if background.is_running():
+            cls.poll_message_set("Another job is running; wait for it or cancel it.")
+            return False
+        if not can_use_active_mesh(cls, context):
+            return False
+        if not other_meshes(context):
+            cls.poll_message_set(NOTHING_ELSE)
+        return bool(other_meshes(context))
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], Tickets]:
+        targets = other_meshes(context)
+        if not targets:
+            raise Refusal(NOTHING_ELSE)
+        settings = {name: getattr(self, name) for name in SETTINGS}
+        return self.start(context, context.object, targets, Wish(mirrored=self.mirrored), settings)
+
+
+def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Return an object for each selected mesh other than the active one's."""
+    objects = {obj.data: obj for obj in context.selected_objects if obj.type == "MESH"}
+    return [obj for mesh, obj in objects.items() if mesh != context.object.data]
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_register_selected,))

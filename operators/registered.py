@@ -1,0 +1,126 @@
+"""What a mesh remembers of its registration, and its own names and colours while it shows those of another."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import bpy
+
+from .part_table import TABLES
+from .refusals import Refusal
+from .state import REGISTRATION, STATE
+
+# In the registration: the tables of parts that are the mesh's own.
+OWN_TABLES = "own_tables"
+# Up to this confidence a matching may well be wrong.
+SURE = 0.5
+
+NOT_REGISTERED = "The object is not registered; register it first."
+NOT_ITS_OWN = "The mesh shows the parts of another object, which have no borders here; move its level first."
+
+
+@dataclass(frozen=True)
+class Match:
+    """How a mesh was matched with its reference, for the panel and for trying again.
+
+    Attributes
+    ----------
+    reference : str
+        Name of the object.
+    confidence : float
+        From 0 to 1; above one half means very likely right.
+    order, signs : tuple of int
+        For each of the reference's first functions, the one that it is here (from 1), and with which sign.
+    flips : dict of str to int
+        The signs that the user gave, by the number of the reference's function.
+    alternative, n_alternatives : int
+        Which matching is shown, 0 for the best, and how many others there are.
+    mirrored, same_topology : bool
+    settings : dict
+        The options of the analysis.
+    """
+
+    reference: str
+    confidence: float
+    order: tuple[int, ...]
+    signs: tuple[int, ...]
+    flips: dict[str, int]
+    alternative: int
+    n_alternatives: int
+    mirrored: bool
+    same_topology: bool
+    settings: dict[str, Any]
+
+
+def remember(mesh: bpy.types.Mesh, reference: bpy.types.Mesh, match: Match) -> None:
+    """Give an analyzed mesh the names and colours of its reference, and keep its own and the match."""
+    take_back(mesh)
+    own = _tables(mesh)
+    _set_tables(mesh, _tables(reference))
+    mesh[STATE][REGISTRATION] = {**asdict(match), OWN_TABLES: own}
+
+
+def take_back(mesh: bpy.types.Mesh) -> None:
+    """Forget the registration, if there is one, and give the mesh its own names and colours again."""
+    group = _group(mesh)
+    if group is None:
+        return
+    own = group.get(OWN_TABLES)
+    _set_tables(mesh, own.to_dict() if hasattr(own, "keys") else {})
+    del mesh[STATE][REGISTRATION]
+
+
+def read(mesh: bpy.types.Mesh) -> Match | None:
+    """Return how a mesh was matched; None if it was not, or what is stored makes no sense."""
+    group = _group(mesh)
+    if group is None:
+        return None
+    try:
+        order, signs = (tuple(int(number) for number in group[name]) for name in ("order", "signs"))
+        return Match(
+            reference=str(group["reference"]),
+            confidence=float(group["confidence"]),
+            order=order,
+            signs=signs,
+            flips={str(int(number)): int(sign) for number, sign in group["flips"].to_dict().items()},
+            alternative=int(group["alternative"]),
+            n_alternatives=int(group["n_alternatives"]),
+            mirrored=bool(group["mirrored"]),
+            same_topology=bool(group["same_topology"]),
+            settings=group["settings"].to_dict(),
+        )
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return None
+
+
+def registered_objects(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Object, Match]]:
+    """Yield the objects of the view that show the parts of another, with how they were matched."""
+    for obj in context.view_layer.objects:
+        match = read(obj.data) if obj.type == "MESH" else None
+        if match is not None:
+            yield obj, match
+
+
+def refuse_registered(mesh: bpy.types.Mesh) -> None:
+    """Raise a Refusal if the parts that a mesh shows are not those of one of its levels."""
+    if _group(mesh) is not None:
+        raise Refusal(NOT_ITS_OWN)
+
+
+def _group(mesh: bpy.types.Mesh) -> Any:
+    state = mesh.get(STATE)
+    group = state.get(REGISTRATION) if hasattr(state, "keys") else None
+    return group if hasattr(group, "keys") else None
+
+
+def _tables(mesh: bpy.types.Mesh) -> dict[str, Any]:
+    state = mesh[STATE]
+    return {name: state[name].to_dict() for name in TABLES if hasattr(state.get(name), "keys")}
+
+
+def _set_tables(mesh: bpy.types.Mesh, tables: dict[str, Any]) -> None:
+    for name in TABLES:
+        if name in tables:
+            mesh[STATE][name] = tables[name]
+        elif name in mesh[STATE]:
+            del mesh[STATE][name]

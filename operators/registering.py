@@ -1,0 +1,154 @@
+"""What operators have in common that register meshes to a reference."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import bpy
+import numpy as np
+
+from . import exchange, registered, results, state
+from .analyze import Ticket, analysis_options, find_mesh
+from .background import BackgroundOperator
+from .properties import AnalysisOptions
+from .refusals import IN_EDIT_MODE, Refusal
+from .registration import SHOWN_FUNCTIONS, Found, Registration, Shown, Subject, Wish, register_subjects
+from .viewport import show_vertex_colours
+
+SETTINGS = tuple(AnalysisOptions.__annotations__)
+
+
+@dataclass(frozen=True)
+class Tickets:
+    """Where the results belong, and what is remembered with them."""
+
+    reference: Ticket
+    reference_name: str
+    names: tuple[str, ...]
+    targets: tuple[Ticket, ...]
+    wish: Wish
+    settings: dict[str, Any]
+
+
+class Registers(BackgroundOperator):
+    """Registers objects to another; operators give ``begin``, which returns ``self.start(...)``."""
+
+    def start(
+        self,
+        context: bpy.types.Context,
+        reference: bpy.types.Object,
+        targets: list[bpy.types.Object],
+        wish: Wish,
+        settings: dict[str, Any],
+    ) -> tuple[Callable[..., Registration], Tickets]:
+        """Read all meshes; whatever stands in the way is told now."""
+        _refuse_registered(reference)
+        subjects = [_read(context, obj, settings) for obj in (reference, *targets)]
+        tickets = [Ticket(obj.data.session_uid, exchange.fingerprint(obj.data)) for obj in (reference, *targets)]
+        shown, first_free = _shown(reference.data), _first_free_label(context, reference.name, targets)
+        work = partial(register_subjects, subjects[0], shown, subjects[1:], wish, first_free)
+        names = tuple(obj.name for obj in targets)
+        return work, Tickets(tickets[0], reference.name, names, tuple(tickets[1:]), wish, settings)
+
+    def finish(self, context: bpy.types.Context, tickets: Tickets, registration: Registration) -> set[str]:
+        reference, *meshes = (find_mesh(ticket) for ticket in (tickets.reference, *tickets.targets))
+        for mesh in (reference, *meshes):
+            results.refuse_foreign_results(mesh)
+        _store(reference, registration.reference)
+        results.segment_mesh(reference, level=registration.level)
+        for mesh, found in zip(meshes, registration.found, strict=True):
+            _store(mesh, found.outcome)
+            registered.remember(mesh, reference, _match(tickets, found))
+            results.show_labels(mesh, found.labels, found.outcome.stored.branches, state.mode_of(mesh))
+        show_vertex_colours(context)
+        context.window_manager.eigenparts.problem = ""
+        self._tell(tickets, registration)
+        return {"FINISHED"}
+
+    def _tell(self, tickets: Tickets, registration: Registration) -> None:
+        confidences = [found.matching.confidence for found in registration.found]
+        lowest = min(confidences)
+        name = tickets.names[confidences.index(lowest)]
+        n_objects = "1 object" if len(confidences) == 1 else f"{len(confidences)} objects"
+        self.report({"INFO"}, f"Registered {n_objects} to {tickets.reference_name}; least sure: {name}, {lowest:.0%}.")
+        if lowest <= registered.SURE:
+            self.report({"WARNING"}, f"{name} is matched with a confidence of {lowest:.0%} only; look at its parts.")
+        for found in registration.found:
+            for number in tickets.wish.flips.keys() - met_flips(tickets.wish.flips, found.matching.signs).keys():
+                self.report({"WARNING"}, f"Every matching that fits has function {number} with the sign that it had.")
+
+
+def met_flips(flips: Mapping[int, int], signs: np.ndarray) -> dict[int, int]:
+    """Return those of the wanted signs that a matching has."""
+    return {number: sign for number, sign in flips.items() if signs[number - 1] == sign}
+
+
+def _refuse_registered(reference: bpy.types.Object) -> None:
+    match = registered.read(reference.data)
+    if match is not None:
+        raise Refusal(
+            f"{reference.name} shows the parts of {match.reference}; make that one the active object, or move the level"
+            f" of {reference.name} first, so that it has parts of its own."
+        )
+
+
+def _store(mesh: bpy.types.Mesh, outcome: Any) -> None:
+    state.store(mesh, outcome.stored, outcome.source, outcome.description)
+
+
+def _read(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str, Any]) -> Subject:
+    """Return what of an object goes into the job, or say by its name why nothing can."""
+    mesh = obj.data
+    try:
+        if mesh.is_editmode:
+            raise Refusal(IN_EDIT_MODE)
+        if mesh.library is not None:
+            raise Refusal("The mesh is linked from another file; make it local first.")
+        results.refuse_foreign_results(mesh)
+        arrays = _arrays(context, obj, settings)
+        options = {name: settings[name] for name in SETTINGS if name != "use_modifiers"}
+        return Subject(obj.name, arrays, analysis_options(mesh, **options))
+    except Refusal as refusal:
+        raise Refusal(f"{obj.name}: {refusal}") from refusal
+
+
+def _arrays(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str, Any]) -> exchange.MeshArrays:
+    if settings["use_modifiers"]:
+        return exchange.read_evaluated_mesh(obj, context.evaluated_depsgraph_get())
+    return exchange.read_mesh(obj.data)
+
+
+def _shown(mesh: bpy.types.Mesh) -> Shown:
+    try:
+        summary = state.summarize(mesh)
+    except Refusal:
+        return Shown(None, 0, state.mode_of(mesh))
+    return Shown(summary.level, summary.n_levels, state.mode_of(mesh))
+
+
+def _first_free_label(context: bpy.types.Context, reference: str, targets: list[bpy.types.Object]) -> int:
+    """Return a label above all that others have which are registered to the same reference."""
+    labels = [
+        label
+        for obj, match in registered.registered_objects(context)
+        if match.reference == reference and obj not in targets
+        for label, _, _ in state.summarize(obj.data).parts
+    ]
+    return 1 + max(labels, default=0)
+
+
+def _match(tickets: Tickets, found: Found) -> registered.Match:
+    matching = found.matching
+    return registered.Match(
+        reference=tickets.reference_name,
+        confidence=float(matching.confidence),
+        order=tuple((1 + matching.order[:SHOWN_FUNCTIONS]).tolist()),
+        signs=tuple(matching.signs[:SHOWN_FUNCTIONS].tolist()),
+        flips={str(number): sign for number, sign in met_flips(tickets.wish.flips, matching.signs).items()},
+        alternative=found.alternative,
+        n_alternatives=found.n_alternatives,
+        mirrored=matching.mirrored,
+        same_topology=matching.same_topology,
+        settings=tickets.settings,
+    )

@@ -1,0 +1,48 @@
+"""What operators have in common that register one object once more; functions are not stored, so both are analyzed."""
+
+from collections.abc import Callable
+
+import bpy
+from bpy.props import StringProperty
+
+from . import background, registered
+from .refusals import Refusal, can_use_active_mesh
+from .registering import Registers, Tickets
+from .registration import Registration, Wish
+
+
+class RegistersAgain(Registers):
+    """Registers one object again as before, but for what ``wish`` says."""
+
+    object_name: StringProperty(name="Object", description="Name of the object; the active one if empty")
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if background.is_running():
+            cls.poll_message_set("Another job is running; wait for it or cancel it.")
+            return False
+        return can_use_active_mesh(cls, context)
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], Tickets]:
+        obj = context.object if not self.object_name else _mesh_object(context, self.object_name)
+        match = registered.read(obj.data)
+        if match is None:
+            raise Refusal(registered.NOT_REGISTERED)
+        reference = _mesh_object(context, match.reference)
+        return self.start(context, reference, [obj], self.wish(match), match.settings)
+
+    def wish(self, match: registered.Match) -> Wish:
+        """Return what is to be different now."""
+        raise NotImplementedError
+
+
+def given_flips(match: registered.Match) -> dict[int, int]:
+    """Return the signs that the user gave before."""
+    return {int(number): sign for number, sign in match.flips.items()}
+
+
+def _mesh_object(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    obj = context.view_layer.objects.get(name)
+    if obj is None or obj.type != "MESH":
+        raise Refusal(f'There is no mesh object "{name}" here any more; register the selected meshes again.')
+    return obj
