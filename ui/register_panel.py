@@ -25,14 +25,16 @@ class EIGENPARTS_PT_register(bpy.types.Panel):
 def _draw_match(layout: bpy.types.UILayout, name: str, match: registered.Match) -> None:
     row = layout.row()
     row.label(text=name, icon="CHECKMARK" if match.confidence > registered.SURE else "QUESTION")
-    row.label(text=f"{match.confidence:.0%}")
+    share = row.row()
+    share.alignment = "RIGHT"
+    share.label(text=f"{match.confidence:.0%}")
     if match.n_alternatives:
         text = f"{match.alternative + 1} of {match.n_alternatives + 1}"
         row.operator("eigenparts.next_alternative", text=text, icon="FILE_REFRESH").object_name = name
     if match.same_topology:
         layout.label(text=f"Same faces as {match.reference}")
     else:
-        layout.label(text=f"Functions of {match.reference}, and which they are here")
+        layout.label(text=f"Functions of {match.reference}")
     grid = layout.grid_flow(row_major=True, columns=FUNCTIONS_IN_A_ROW, even_columns=True, align=True)
     for number, (place, sign) in enumerate(zip(match.order, match.signs, strict=True), start=1):
         flip = grid.operator("eigenparts.flip_function", text=f"{number}: {'-' if sign < 0 else '+'}{place}")
