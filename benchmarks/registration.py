@@ -7,6 +7,7 @@ the connectivity that the poses share before remeshing. Beside it stand the same
 
 import argparse
 import pickle
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -223,7 +224,7 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--cache", type=Path, default=Path("/tmp/eigenparts-registration"))
+    parser.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "eigenparts-registration")
     parser.add_argument("--pairs", type=int, default=4, help="of each family and kind of copy")
     parser.add_argument("--families", default=",".join(FAMILIES))
     arguments = parser.parse_args()
