@@ -12,7 +12,8 @@ from ..compute.errors import EngineError
 from ..compute.progress import silent
 from ..compute.segmentation.parts import BranchLabels
 from ..operators import exchange, results, state
-from ..operators.analyze import analysis_options, analyze_arrays
+from ..operators.analysis_request import analysis_options
+from ..operators.analyze import analyze_arrays
 from ..operators.refusals import Refusal
 from . import formats
 from .names import name_of_part

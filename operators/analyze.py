@@ -8,10 +8,9 @@ from typing import Any
 
 import bpy
 
-from . import background, engine, exchange, results, state
-from .background import BackgroundOperator
-from .properties import AnalysisOptions
-from .refusals import Refusal, can_use_active_mesh
+from . import engine, exchange, results, state
+from .analysis_request import AnalysisRequest
+from .refusals import Refusal
 from .viewport import show_vertex_colours
 
 
@@ -34,36 +33,18 @@ class Outcome:
     seconds: float
 
 
-class EIGENPARTS_OT_analyze(AnalysisOptions, BackgroundOperator, bpy.types.Operator):
+class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
     """Find the features of the active mesh and divide it into parts"""
 
     bl_idname = "eigenparts.analyze"
     bl_label = "Analyze"
     bl_options = {"UNDO"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if background.is_running():
-            cls.poll_message_set("Another job is running; wait for it or cancel it.")
-            return False
-        return can_use_active_mesh(cls, context)
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """From the window: what the call leaves open is taken from the panel."""
-        for name in AnalysisOptions.__annotations__:
-            if not self.properties.is_property_set(name):
-                setattr(self, name, getattr(context.scene.eigenparts, name))
-        return super().invoke(context, event)
-
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Outcome], Ticket]:
         mesh = context.object.data
         results.refuse_foreign_results(mesh)
-        if self.use_modifiers:
-            arrays = exchange.read_evaluated_mesh(context.object, context.evaluated_depsgraph_get())
-        else:
-            arrays = exchange.read_mesh(mesh)
         ticket = Ticket(mesh.session_uid, exchange.fingerprint(mesh))
-        return partial(analyze_arrays, arrays, self._options(mesh)), ticket
+        return partial(analyze_arrays, *self.read(context)), ticket
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
@@ -75,23 +56,6 @@ class EIGENPARTS_OT_analyze(AnalysisOptions, BackgroundOperator, bpy.types.Opera
             self.report({"WARNING"}, warning)
         self.report({"INFO"}, _told(len(labels.parts), outcome.seconds))
         return {"FINISHED"}
-
-    def _options(self, mesh: bpy.types.Mesh) -> dict[str, Any]:
-        return analysis_options(
-            mesh, self.field, self.eigenfunction, self.attribute, order=self.order, boundary=self.boundary
-        )
-
-
-def analysis_options(
-    mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str
-) -> dict[str, Any]:
-    """Return the keyword arguments of the engine for the settings of the user."""
-    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": eigenfunction}
-    return {
-        "field": exchange.read_vertex_floats(mesh, attribute) if field == "ATTRIBUTE" else choice[field],
-        "order": "auto" if order == "AUTO" else int(order),
-        "boundary": boundary.lower(),
-    }
 
 
 def analyze_arrays(

@@ -74,6 +74,13 @@ def is_running() -> bool:
     return _running is not None
 
 
+def can_start_job(operator: type[bpy.types.Operator]) -> bool:
+    """Whether no job is under way; if one is, the tooltip says so."""
+    if is_running():
+        operator.poll_message_set("Another job is running; wait for it or cancel it.")
+    return not is_running()
+
+
 def stop_running_job() -> None:
     """Disown the running job, if there is one; its operator notices at the next tick."""
     global _running

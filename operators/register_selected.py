@@ -32,10 +32,7 @@ class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operat
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if background.is_running():
-            cls.poll_message_set("Another job is running; wait for it or cancel it.")
-            return False
-        if not can_use_active_mesh(cls, context):
+        if not background.can_start_job(cls) or not can_use_active_mesh(cls, context):
             return False
         if not other_meshes(context):
             cls.poll_message_set(NOTHING_ELSE)

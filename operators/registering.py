@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 
 from . import exchange, registered, results, state
-from .analyze import Ticket, analysis_options, find_mesh
+from .analysis_request import analysis_options
+from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
 from .properties import AnalysisOptions
 from .refusals import IN_EDIT_MODE, Refusal

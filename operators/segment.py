@@ -33,11 +33,7 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not can_use_active_mesh(cls, context):
-            return False
-        if not state.is_analyzed(context.object.data):
-            cls.poll_message_set(state.ABSENT)
-        return state.is_analyzed(context.object.data)
+        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         given = [name for name in ("level", "threshold", "n_parts") if self.properties.is_property_set(name)]

@@ -115,6 +115,13 @@ def is_analyzed(mesh: bpy.types.Mesh) -> bool:
     return STATE in mesh
 
 
+def is_analyzed_for(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Whether the active mesh carries an analysis; if not, the tooltip says what to do."""
+    if not is_analyzed(context.object.data):
+        operator.poll_message_set(ABSENT)
+    return is_analyzed(context.object.data)
+
+
 def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, description: str) -> None:
     """Put an analysis on the mesh it was made from, in place of an earlier one."""
     hierarchy = analysis.hierarchy

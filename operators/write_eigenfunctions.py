@@ -27,10 +27,7 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if background.is_running():
-            cls.poll_message_set("Another job is running; wait for it or cancel it.")
-            return False
-        return can_use_active_mesh(cls, context)
+        return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., np.ndarray], Ticket]:
         mesh = context.object.data

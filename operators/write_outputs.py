@@ -32,11 +32,7 @@ class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not can_use_active_mesh(cls, context):
-            return False
-        if not state.is_analyzed(context.object.data):
-            cls.poll_message_set(state.ABSENT)
-        return state.is_analyzed(context.object.data)
+        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         mesh = context.object.data

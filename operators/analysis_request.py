@@ -1,0 +1,49 @@
+"""What operators that analyze the active mesh have in common: when they can, what is read, and with which settings."""
+
+from typing import Any
+
+import bpy
+
+from . import background, exchange
+from .background import BackgroundOperator
+from .properties import AnalysisOptions
+from .refusals import can_use_active_mesh
+
+
+class AnalysisRequest(AnalysisOptions, BackgroundOperator):
+    """Analyzes the active mesh in the background."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return background.can_start_job(cls) and can_use_active_mesh(cls, context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """From the window: what the call leaves open is taken from the panel."""
+        for name in AnalysisOptions.__annotations__:
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(context.scene.eigenparts, name))
+        return super().invoke(context, event)
+
+    def read(self, context: bpy.types.Context) -> tuple[exchange.MeshArrays, dict[str, Any]]:
+        """Return the active mesh, posed if that is wanted, and the keyword arguments of the engine."""
+        mesh = context.object.data
+        if self.use_modifiers:
+            arrays = exchange.read_evaluated_mesh(context.object, context.evaluated_depsgraph_get())
+        else:
+            arrays = exchange.read_mesh(mesh)
+        options = analysis_options(
+            mesh, self.field, self.eigenfunction, self.attribute, order=self.order, boundary=self.boundary
+        )
+        return arrays, options
+
+
+def analysis_options(
+    mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str
+) -> dict[str, Any]:
+    """Return the keyword arguments of the engine for the settings of the user."""
+    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": eigenfunction}
+    return {
+        "field": exchange.read_vertex_floats(mesh, attribute) if field == "ATTRIBUTE" else choice[field],
+        "order": "auto" if order == "AUTO" else int(order),
+        "boundary": boundary.lower(),
+    }
