@@ -52,11 +52,11 @@ class Match:
     settings: dict[str, Any]
 
 
-def remember(mesh: bpy.types.Mesh, reference: bpy.types.Mesh, match: Match) -> None:
-    """Give an analyzed mesh the names and colours of its reference, and keep its own and the match."""
+def remember(mesh: bpy.types.Mesh, tables: dict[str, Any], match: Match) -> None:
+    """Give an analyzed mesh the names and colours in the tables of its reference, and keep its own and the match."""
     take_back(mesh)
-    own = _tables(mesh)
-    _set_tables(mesh, _tables(reference))
+    own = tables_of(mesh)
+    _set_tables(mesh, tables)
     mesh[STATE][REGISTRATION] = {**asdict(match), OWN_TABLES: own}
 
 
@@ -113,7 +113,8 @@ def _group(mesh: bpy.types.Mesh) -> Any:
     return group if hasattr(group, "keys") else None
 
 
-def _tables(mesh: bpy.types.Mesh) -> dict[str, Any]:
+def tables_of(mesh: bpy.types.Mesh) -> dict[str, Any]:
+    """Return the names and colours of the parts of an analyzed mesh, as they are stored."""
     state = mesh[STATE]
     return {name: state[name].to_dict() for name in TABLES if hasattr(state.get(name), "keys")}
 

@@ -58,9 +58,10 @@ class Registers(BackgroundOperator):
             results.refuse_foreign_results(mesh)
         _store(reference, registration.reference)
         results.segment_mesh(reference, level=registration.level)
+        tables = registered.tables_of(reference)
         for mesh, found in zip(meshes, registration.found, strict=True):
             _store(mesh, found.outcome)
-            registered.remember(mesh, reference, _match(tickets, found))
+            registered.remember(mesh, tables, match_of(found, tickets.reference_name, tickets.wish, tickets.settings))
             results.show_labels(mesh, found.labels, found.outcome.stored.branches, state.mode_of(mesh))
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
@@ -139,17 +140,18 @@ def _first_free_label(context: bpy.types.Context, reference: str, targets: list[
     return 1 + max(labels, default=0)
 
 
-def _match(tickets: Tickets, found: Found) -> registered.Match:
+def match_of(found: Found, reference: str, wish: Wish, settings: dict[str, Any]) -> registered.Match:
+    """Return what a mesh remembers of how it was registered."""
     matching = found.matching
     return registered.Match(
-        reference=tickets.reference_name,
+        reference=reference,
         confidence=float(matching.confidence),
         order=tuple((1 + matching.order[:SHOWN_FUNCTIONS]).tolist()),
         signs=tuple(matching.signs[:SHOWN_FUNCTIONS].tolist()),
-        flips={str(number): sign for number, sign in met_flips(tickets.wish.flips, matching.signs).items()},
+        flips={str(number): sign for number, sign in met_flips(wish.flips, matching.signs).items()},
         alternative=found.alternative,
         n_alternatives=found.n_alternatives,
         mirrored=matching.mirrored,
         same_topology=matching.same_topology,
-        settings=tickets.settings,
+        settings=settings,
     )

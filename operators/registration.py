@@ -104,7 +104,7 @@ def register_subjects(
     """
     n_steps = 2 * len(targets) + 1
     # All are analyzed first: what cannot be is told before the longer part begins.
-    analyzed = [_analyze(target, _step(progress, k, n_steps)) for k, target in enumerate((reference, *targets))]
+    analyzed = [analyze_subject(target, _step(progress, k, n_steps)) for k, target in enumerate((reference, *targets))]
     (analysis, outcome), *others = analyzed
     level = shown.level if analysis.hierarchy.n_levels == shown.n_levels else None
     segmentation = analysis.segment(level=level, mode=shown.mode)
@@ -115,13 +115,14 @@ def register_subjects(
     for number, (target, (own, own_outcome)) in enumerate(zip(targets, others, strict=True)):
         told = f"Registering {target.name}, {number + 1} of {len(targets)}"
         progress((len(targets) + 1 + number) / n_steps, told)
-        found.append(_register(prepared, own, own_outcome, wish, first_free))
+        found.append(register_analyzed(prepared, own, own_outcome, wish, first_free))
         first_free = max(first_free, int(found[-1].labels.parts.id.max()) + 1)
     progress(1.0, "Done")
     return Registration(outcome, segmentation.level, tuple(found))
 
 
-def _analyze(subject: Subject, progress: Progress) -> tuple["engine.Analysis", Outcome]:
+def analyze_subject(subject: Subject, progress: Progress) -> tuple["engine.Analysis", Outcome]:
+    """Return the analysis of a mesh and what of it is left for the mesh; a Refusal names the object."""
     start = time.perf_counter()
     try:
         mesh = engine.TriangleMesh(subject.arrays.vertices, subject.arrays.triangles)
@@ -133,9 +134,10 @@ def _analyze(subject: Subject, progress: Progress) -> tuple["engine.Analysis", O
     return analysis, outcome_of(analysis, subject.arrays, subject.options, time.perf_counter() - start)
 
 
-def _register(
+def register_analyzed(
     reference: "engine.Reference", target: "engine.Analysis", outcome: Outcome, wish: Wish, first_free: int
 ) -> Found:
+    """Return an analyzed mesh divided into the parts of the reference; its own are numbered from ``first_free``."""
     shape = engine.spectral_shape(target.matching_basis)
     best = engine.match_surfaces(
         reference.surface, target.surface, reference.shape, shape, flips=wish.flips, mirrored=wish.mirrored
