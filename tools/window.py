@@ -1,0 +1,173 @@
+"""Drive the real Blender application on a screen that is not there: keys, Python inside it, and pictures.
+
+The application is the one that the variable EIGENPARTS_BLENDER names, else ``blender`` on the path, else one in a usual
+place. It starts with settings and extensions of its own, so that nothing of the user's is touched.
+"""
+
+import os
+import secrets
+import shutil
+import subprocess
+import time
+from collections.abc import Callable
+from multiprocessing.connection import Listener
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tools.screen import Screen, write_png
+
+VARIABLE = "EIGENPARTS_BLENDER"
+USUAL_PLACES = (
+    *("/usr/bin/blender", "/usr/local/bin/blender", "/snap/bin/blender", "/opt/blender*/blender"),
+    *("~/blender*/blender", "~/Applications/blender*/blender", "~/Downloads/blender*/blender"),
+)
+INSIDE = Path(__file__).with_name("inside_window.py")
+# Seconds; drawing may be done by the processor.
+PATIENCE = 120.0
+
+
+class WindowError(Exception):
+    """What was asked of the application could not be done; the text is its traceback or its last words."""
+
+
+def find_application() -> str | None:
+    """Return the path of a Blender with windows, None if there is none."""
+    named = os.environ.get(VARIABLE) or shutil.which("blender")
+    return named or next((str(path) for pattern in USUAL_PLACES for path in _matches(pattern)), None)
+
+
+def what_is_missing() -> str:
+    """Return why no window can be driven here, in a sentence; nothing if one can."""
+    if not Screen.is_possible():
+        return "Needs Xvfb (Debian, Ubuntu: apt install xvfb)."
+    if find_application() is None:
+        return f"Needs the Blender application; name it in the variable {VARIABLE}."
+    return ""
+
+
+class Window:
+    """A Blender that runs on a screen of its own until it is closed.
+
+    Parameters
+    ----------
+    folder : Path
+        For its settings and extensions; the application must see it under this path.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._screen = Screen(folder)
+        inside = Path(shutil.copy(INSIDE, folder))
+        key = secrets.token_bytes(16)
+        # If the application dies before it calls, nobody else would end the waiting.
+        self._listener = Listener(("localhost", 0), authkey=key)
+        self._listener._listener._socket.settimeout(PATIENCE)
+        # Blender does not believe in a folder that is not there, and takes the user's own.
+        (folder / "user").mkdir(exist_ok=True)
+        own = {"BLENDER_USER_RESOURCES": str(folder / "user"), "PYTHONUNBUFFERED": "1"}
+        address = str(self._listener.address[1])
+        command = [find_application(), "--enable-event-simulate", "--python", inside, "--", address, key.hex()]
+        self.log = folder / "log.txt"
+        with self.log.open("w") as log:
+            self._process = subprocess.Popen(command, env={**os.environ, "DISPLAY": self._screen.name, **own}, stdout=log, stderr=log)
+        try:
+            self._connection = self._listener.accept()
+        except OSError as error:
+            self._end()
+            raise WindowError(self.log.read_text()) from error
+
+    def run(self, source: str) -> None:
+        """Carry out Python in the application; names stay for the next piece."""
+        self._ask("run", source)
+
+    def value(self, source: str) -> Any:
+        """Return what an expression is in the application."""
+        return self._ask("value", source)
+
+    def press(self, key: str, **modifiers: bool) -> None:
+        """Press and release a key, named as Blender names it, over the 3D view."""
+        for value in ("PRESS", "RELEASE"):
+            self._simulate(key, value, **modifiers)
+
+    def point(self, x: int, y: int) -> None:
+        """Move the mouse to pixels of the window, counted from below."""
+        self._simulate("MOUSEMOVE", "NOTHING", x=x, y=y)
+
+    def click(self, x: int, y: int) -> None:
+        """Click with the left button."""
+        self.point(x, y)
+        for value in ("PRESS", "RELEASE"):
+            self._simulate("LEFTMOUSE", value, x=x, y=y)
+
+    def write(self, text: str) -> None:
+        """Type letters, digits and spaces."""
+        for letter in text:
+            name = {" ": "SPACE"}.get(letter, letter.upper())
+            self._simulate(name, "PRESS", unicode=letter)
+            self._simulate(name, "RELEASE")
+
+    def wait_for(self, expression: str, seconds: float = PATIENCE) -> float:
+        """Wait until an expression is true, and return how many seconds it took."""
+        start = time.monotonic()
+        while not self.value(expression):
+            if time.monotonic() - start > seconds:
+                raise WindowError(f"In {seconds} seconds this never came true: {expression}")
+            time.sleep(0.02)
+        return time.monotonic() - start
+
+    def settle(self, seconds: float = 1.0) -> None:
+        """Let the window be drawn."""
+        for _ in range(2):
+            self.value("None")
+            time.sleep(seconds / 2)
+
+    def pixels(self) -> np.ndarray:
+        """Return (height, width, 3) uint8 of the screen, top row first."""
+        return self._screen.pixels()
+
+    def picture(self, path: Path, crop: tuple[slice, slice] = (slice(None), slice(None))) -> Path:
+        """Write what the screen shows as a PNG."""
+        self.settle()
+        write_png(path, self.pixels()[crop])
+        return path
+
+    def close(self) -> None:
+        """End the application and its screen."""
+        self._connection.close()
+        self._end()
+
+    def _end(self) -> None:
+        self._listener.close()
+        _end_within(5.0, self._process.wait, self._process.kill)
+        self._screen.close()
+
+    def _ask(self, way: str, source: str) -> Any:
+        self._connection.send((way, source))
+        if not self._connection.poll(PATIENCE):
+            raise WindowError(f"No answer in {PATIENCE} seconds to: {source}")
+        try:
+            kind, answer = self._connection.recv()
+        except EOFError as error:
+            raise WindowError(f"Blender ended.\n{self.log.read_text()[-4000:]}") from error
+        if kind == "error":
+            raise WindowError(answer)
+        return answer
+
+    def _simulate(self, key: str, value: str, **details: Any) -> None:
+        told = "".join(f", {name}={detail!r}" for name, detail in details.items())
+        self.run(f"bpy.context.window_manager.windows[0].event_simulate({key!r}, {value!r}{told})")
+
+
+def _matches(pattern: str) -> list[Path]:
+    path = Path(pattern).expanduser()
+    return sorted(path.parent.parent.glob(f"{path.parent.name}/{path.name}"))[::-1]
+
+
+def _end_within(seconds: float, wait: Callable[..., Any], kill: Callable[[], None]) -> None:
+    try:
+        wait(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        kill()
+        wait()
