@@ -85,6 +85,14 @@ class ArcTree:
         """Tell which arcs (A,) are whole parts of a level: the first cut on the way from each surviving leaf."""
         return self.is_cut(level) & (self.closing_before >= level)
 
+    def subtree(self, arc: int) -> Bools:
+        """Tell which arcs (A,) lie in the part that is cut off at one, itself included."""
+        inside = np.zeros(len(self.parent), dtype=bool)
+        inside[arc] = True
+        for inner in range(arc - 1, -1, -1):
+            inside[inner] = self.parent[inner] >= 0 and inside[self.parent[inner]]
+        return inside
+
     def spread(self, part: Ints) -> Ints:
         """Return the parts (A,) of all arcs, given those of the cut ones and 0 elsewhere."""
         part = part.copy()

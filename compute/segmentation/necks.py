@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..fields import Net, ScalarField
-from ..mesh import Bools, Floats, Ints
+from ..mesh import Floats, Ints
 from .arc_areas import share_below
 from .arc_tree import ArcTree
 
@@ -33,7 +33,7 @@ def measured(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcTree:
     tall = np.flatnonzero(height > LEAST_HEIGHT)
     levels = top[tall, None] - (top - bottom)[tall, None] * (np.arange(N_SAMPLES) + 0.05) / N_SAMPLES
     length, area = np.zeros((2, len(height), N_SAMPLES))
-    length[tall], area[tall] = _level_sets(rising, arc, tree.parent, field.net, tall, levels)
+    length[tall], area[tall] = _level_sets(rising, arc, tree, field.net, tall, levels)
     return replace(
         tree,
         height=height,
@@ -44,7 +44,7 @@ def measured(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcTree:
 
 
 def _level_sets(
-    values: Floats, arc: Ints, parent: Ints, net: Net, chosen: Ints, levels: Floats
+    values: Floats, arc: Ints, tree: ArcTree, net: Net, chosen: Ints, levels: Floats
 ) -> tuple[Floats, Floats]:
     """Return the lengths of level sets of the chosen arcs, and the areas they cut off."""
     order = np.argsort(values[net.triangles], axis=1, kind="stable")
@@ -53,7 +53,7 @@ def _level_sets(
     innermost = arc[net.triangles].min(axis=1)
     length, area = np.zeros((2, *levels.shape))
     for row, number in enumerate(chosen.tolist()):
-        above = _way_passes(parent, number)[innermost]
+        above = tree.subtree(number)[innermost]
         whole = above & (heights[:, 2] <= levels[row].min())
         near = np.flatnonzero(above & ~whole & (heights[:, 0] < levels[row].max()))
         for column, level in enumerate(levels[row].tolist()):
@@ -81,15 +81,6 @@ def _heights(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
     children = np.flatnonzero(tree.parent >= 0)
     bottom[tree.parent[children]] = top[children]
     return bottom, top
-
-
-def _way_passes(parent: Ints, number: int) -> Bools:
-    """Tell from which arcs (A,) the way to the root passes a given one."""
-    passes = np.zeros(len(parent), dtype=bool)
-    passes[number] = True
-    for arc in range(number - 1, -1, -1):
-        passes[arc] = parent[arc] >= 0 and passes[parent[arc]]
-    return passes
 
 
 def _level_set_length(heights: Floats, corners: Floats, level: float) -> float:

@@ -16,8 +16,8 @@ LEAST_AREA = 0.05
 BLUNT = 4.4
 
 
-def nested_parts(tree: ArcTree, level: int, default_level: int, area: Floats) -> Ints:
-    """Return the part (A,) that is cut off at each arc when all levels up to this one are overlaid, 0 for none.
+def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> Bools:
+    """Tell which arcs (A,) end a part when all levels up to this one are overlaid.
 
     Up to the default level every feature is cut off unless it is blunt, and so is what lies between two of its saddles
     (the torso between arms and legs), unless it is a thin shell or no neck shows where it ends. Beyond the default
@@ -35,8 +35,31 @@ def nested_parts(tree: ArcTree, level: int, default_level: int, area: Floats) ->
     is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)), area)
     is_finer = tree.is_cut(level) & (tree.closing >= default_level)
     was_feature = tree.least_closing_inside > tree.closing
-    is_cut |= is_finer & was_feature & (tree.roundness < BLUNT)
-    return _numbered(tree, is_cut)
+    return is_cut | (is_finer & was_feature & (tree.roundness < BLUNT))
+
+
+def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
+    """Return the number (A,) of the part that is cut off at each arc, 0 where nothing is.
+
+    The outermost on the way of a leaf has the leaf's number, so that an arm stays the same part when its fingers
+    appear; the others have numbers of their own, beyond those of the leaves.
+    """
+    # Numbers of leaves are followed by those of inner parts between maxima, then between minima, then of saddles that
+    # survive always.
+    first = 1 + tree.n_roots + tree.n_features * (1 if tree.is_of_maxima else 2)
+    number = np.zeros(len(is_cut), dtype=np.int64)
+    seen: set[int] = set()
+    for arc in np.flatnonzero(is_cut)[::-1].tolist():
+        part, closing = int(tree.part[arc]), int(tree.closing[arc])
+        inner = first + closing if closing >= 0 else first_own_part(tree) + arc
+        number[arc] = inner if part in seen else part
+        seen.add(part)
+    return number
+
+
+def first_own_part(tree: ArcTree) -> int:
+    """Return the least number that no part of any level has."""
+    return 1 + tree.n_roots + 3 * tree.n_features
 
 
 def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
@@ -73,20 +96,3 @@ def _with_a_body(tree: ArcTree, is_cut: Bools, is_inner: Bools, area: Floats) ->
     kept = is_cut.copy()
     kept[next_to_body[size[1 + next_to_body].argmax()]] = False
     return kept
-
-
-def _numbered(tree: ArcTree, is_cut: Bools) -> Ints:
-    """Give the cut arcs their numbers.
-
-    The outermost on the way of a leaf has the leaf's number, so that an arm stays the same part when its fingers
-    appear; the others have numbers of their own, beyond those of the leaves.
-    """
-    # Numbers of leaves are followed by those of inner parts between maxima, then between minima.
-    first = 1 + tree.n_roots + tree.n_features * (1 if tree.is_of_maxima else 2)
-    number = np.zeros(len(is_cut), dtype=np.int64)
-    seen: set[int] = set()
-    for arc in np.flatnonzero(is_cut)[::-1].tolist():
-        part = int(tree.part[arc])
-        number[arc] = first + tree.closing[arc] if part in seen else part
-        seen.add(part)
-    return number

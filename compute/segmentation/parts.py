@@ -1,20 +1,20 @@
 """Parts of a level: labels for the faces and a table of what they are."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LevelError
-from ..mesh import Floats, Ints
-from .arc_tree import ArcTree
+from ..mesh import Bools, Floats, Ints
 from .borders import Polyline
 from .branches import Branches, repaired_labels
+from .corrections import LEVEL, Corrections, Labelling, corrected
 from .faces import sum_by
 from .hierarchy import Hierarchy
-from .nesting import nested_parts
+from .nesting import nested_cuts, numbered
 
 BODY = 0
 MODES = ("features", "nested")
@@ -60,12 +60,15 @@ class BranchLabels:
         The part of each branch.
     parts : Parts
     warnings : tuple of str
+    resting : tuple of int
+        The places of corrections that have nothing to do at this level.
     """
 
     level: int
     of_branch: Ints
     parts: Parts
     warnings: tuple[str, ...] = ()
+    resting: tuple[int, ...] = ()
 
     def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
         """Return the label of each face from its branch."""
@@ -119,6 +122,7 @@ def label_branches(
     threshold: float | None = None,
     n_parts: int | None = None,
     mode: str = "features",
+    corrections: Corrections | None = None,
 ) -> BranchLabels:
     """Label the branches at one level.
 
@@ -135,6 +139,8 @@ def label_branches(
         Number of labels, the body included; where it cannot be reached, the largest below it.
     mode : "features" or "nested"
         Only the features, or also what lies between them when all levels up to this one are overlaid.
+    corrections : Corrections, optional
+        Changes made by hand; they refer to these branches.
 
     Raises
     ------
@@ -145,30 +151,86 @@ def label_branches(
         raise LevelError(f'The mode is "features" or "nested", not "{mode}".')
     if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
         raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
+    at_level = partial(_at_level, hierarchy, branches, mode, corrections or Corrections())
     if n_parts is not None:
-        return _reach_number(hierarchy, branches, n_parts, mode)
+        return _reach_number(at_level, hierarchy.n_levels, n_parts)
     if level is None:
         level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
-    return _at_level(hierarchy, branches, hierarchy.checked_level(level), mode)
+    return at_level(hierarchy.checked_level(level))
 
 
-def _at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str) -> BranchLabels:
-    return label_behind(cut_arcs(hierarchy, branches, level, mode), hierarchy, branches, level)
+def _at_level(
+    hierarchy: Hierarchy, branches: tuple[Branches, ...], mode: str, corrections: Corrections, level: int
+) -> BranchLabels:
+    cuts = cut_arcs(hierarchy, branches, level, mode, corrections.branch_levels)
+    return label_behind(cuts, hierarchy, branches, level, corrections)
 
 
-def cut_arcs(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str = "features") -> list[Ints]:
-    """Return for each tree the part that is cut off at each arc on a level, 0 where nothing is."""
-    default_level = hierarchy.default_level
-    return [
-        _cut_arcs(tree, pieces, level, default_level, mode)
+def cut_arcs(
+    hierarchy: Hierarchy,
+    branches: tuple[Branches, ...],
+    level: int,
+    mode: str = "features",
+    branch_levels: tuple[tuple[int, int], ...] = (),
+) -> list[Ints]:
+    """Return for each tree the part that is cut off at each arc on a level, 0 where nothing is.
+
+    Parameters
+    ----------
+    branch_levels : tuple of (part, level)
+        Parts inside which another level counts; their own borders stay.
+    """
+    is_cut = _cut_at_level(hierarchy, branches, level, mode)
+    cuts = _numbered(hierarchy, is_cut)
+    for part, own_level in branch_levels:
+        inner = _cut_at_level(hierarchy, branches, min(own_level, hierarchy.n_levels - 1), mode)
+        for number, tree in enumerate(hierarchy.trees):
+            for arc in np.flatnonzero(cuts[number] == part).tolist():
+                inside = tree.subtree(arc)
+                inside[arc] = False
+                is_cut[number] = np.where(inside, inner[number], is_cut[number])
+        cuts = _numbered(hierarchy, is_cut)
+    return cuts
+
+
+def _numbered(hierarchy: Hierarchy, is_cut: list[Bools]) -> list[Ints]:
+    return [numbered(tree, cut) for tree, cut in zip(hierarchy.trees, is_cut, strict=True)]
+
+
+def _cut_at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int, mode: str) -> list[Bools]:
+    """Tell for each tree which arcs end a part."""
+    if mode == "features":
+        return [tree.is_feature(level) for tree in hierarchy.trees]
+    default_level, whole = hierarchy.default_level, branches[0].area.sum()
+    areas = [
+        sum_by(pieces.arc, pieces.area, len(tree.part)) / whole
         for tree, pieces in zip(hierarchy.trees, branches, strict=True)
     ]
+    return [nested_cuts(tree, level, default_level, area) for tree, area in zip(hierarchy.trees, areas, strict=True)]
 
 
-def label_behind(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...], level: int) -> BranchLabels:
+def label_behind(
+    cuts: list[Ints],
+    hierarchy: Hierarchy,
+    branches: tuple[Branches, ...],
+    level: int,
+    corrections: Corrections | None = None,
+) -> BranchLabels:
     """Label all branches by the part that is cut off next to them, as given for each arc of each tree."""
+    corrections = corrections or Corrections()
+    origins = _origins(hierarchy, cuts)
     of_branch = repaired_labels(_overlaid(cuts, hierarchy, branches), branches[0])
-    return BranchLabels(level, of_branch, _tabulate(hierarchy, branches[0], cuts, of_branch))
+    labelling = Labelling(of_branch, origins.parent, _resting_levels(cuts, corrections))
+    if corrections.items:
+        labelling = corrected(labelling, branches[0], corrections)
+    parts = _tabulate(labelling, origins, branches[0])
+    return BranchLabels(level, labelling.of_branch, parts, resting=labelling.resting)
+
+
+def _resting_levels(cuts: list[Ints], corrections: Corrections) -> tuple[int, ...]:
+    """Return the places of the levels of branches whose part is not cut off."""
+    present = set(np.concatenate(cuts).tolist())
+    return tuple(row for row, item in enumerate(corrections.items) if item.kind == LEVEL and item.part not in present)
 
 
 def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...]) -> Ints:
@@ -182,21 +244,13 @@ def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, 
     return overlaid
 
 
-def _cut_arcs(tree: ArcTree, pieces: Branches, level: int, default_level: int, mode: str) -> Ints:
-    """Return the part that is cut off at each arc, 0 where nothing is."""
-    if mode == "features":
-        return np.where(tree.is_feature(level), tree.part, BODY)
-    area = sum_by(pieces.arc, pieces.area, len(tree.part)) / pieces.area.sum()
-    return nested_parts(tree, level, default_level, area)
-
-
-def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts: int, mode: str) -> BranchLabels:
+def _reach_number(at_level: Callable[[int], BranchLabels], n_levels: int, n_parts: int) -> BranchLabels:
     """Return the lowest level with that many labels, or with the most below it."""
     if n_parts < 1:
         raise LevelError(f"The number of parts is at least 1, not {n_parts}.")
-    best = _at_level(hierarchy, branches, 0, mode)
-    for level in range(1, hierarchy.n_levels):
-        labels = _at_level(hierarchy, branches, level, mode)
+    best = at_level(0)
+    for level in range(1, n_levels):
+        labels = at_level(level)
         if len(labels.parts) > n_parts:
             break
         if len(labels.parts) > len(best.parts):
@@ -204,17 +258,32 @@ def _reach_number(hierarchy: Hierarchy, branches: tuple[Branches, ...], n_parts:
     if len(best.parts) == n_parts:
         return best
     warning = f"This shape cannot be divided into exactly {n_parts} parts; it has {len(best.parts)} now."
-    return BranchLabels(best.level, best.of_branch, best.parts, (warning,))
+    return replace(best, warnings=(warning,))
 
 
-def _tabulate(hierarchy: Hierarchy, pieces: Branches, cuts: list[Ints], of_branch: Ints) -> Parts:
-    n_labels = 1 + int(of_branch.max(initial=0))
-    parent, extremum, saddle = np.zeros(n_labels, dtype=np.int64), np.full(n_labels, -1), np.full(n_labels, -1)
+@dataclass(frozen=True, eq=False)
+class _Origins:
+    """By number of the part: what it grows out of, its tip, and the saddle it is cut off at."""
+
+    parent: Ints
+    extremum: Ints
+    saddle: Ints
+
+
+def _origins(hierarchy: Hierarchy, cuts: list[Ints]) -> _Origins:
+    n = 1 + max(int(cut.max(initial=0)) for cut in cuts)
+    parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
     for tree, cut in zip(hierarchy.trees, cuts, strict=True):
-        arcs = np.flatnonzero((cut > BODY) & (cut < n_labels))
+        arcs = np.flatnonzero(cut > BODY)
         extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
         parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
-    area = sum_by(of_branch, pieces.area)
-    n_faces = sum_by(of_branch, pieces.n_faces.astype(float)).astype(np.int64)
+    return _Origins(parent, extremum, saddle)
+
+
+def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Parts:
+    area = sum_by(labelling.of_branch, pieces.area)
+    n_faces = sum_by(labelling.of_branch, pieces.n_faces.astype(float)).astype(np.int64)
     ids = np.flatnonzero(n_faces > 0)
-    return Parts(ids, parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids])
+    n_new = max(0, len(labelling.parent) - len(origins.saddle))
+    extremum, saddle = (np.pad(column, (0, n_new), constant_values=-1) for column in (origins.extremum, origins.saddle))
+    return Parts(ids, labelling.parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids])
