@@ -6,10 +6,12 @@ register, unregister = bpy.utils.register_submodule_factory(
     __package__,
     [
         "properties",
+        "preferences",
         "analyze",
         "segment",
         "select_part",
         "cancel",
+        "copy_report",
         "clear",
         "plot_diagram",
         "trace_complex",

@@ -5,7 +5,10 @@ from typing import Any
 
 import bpy
 
+from . import faults
+from .faults import errors_told
 from .job import Job
+from .preferences import use_preferred_threads
 from .refusals import refusals_told
 
 # Seconds between looks at the job; redrawing more often only takes time from it.
@@ -30,7 +33,8 @@ class BackgroundOperator:
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         if bpy.app.background:
             return self.execute(context)
-        with refusals_told(self):
+        faults.forget()
+        with errors_told(self):
             work, self._ticket = self.begin(context)
             self._job = _start(work)
             self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
@@ -52,7 +56,7 @@ class BackgroundOperator:
             _show_progress(context, self._job)
             return {"PASS_THROUGH"}
         self._leave(context)
-        with refusals_told(self):
+        with errors_told(self):
             return self.finish(context, self._ticket, self._job.result())
         return {"CANCELLED"}
 
@@ -91,6 +95,7 @@ def stop_running_job() -> None:
 
 def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
     global _running
+    use_preferred_threads()
     _running = Job(work)
     return _running
 

@@ -11,12 +11,21 @@ PARTS = (
 )
 
 
+def standard_colours() -> list[tuple[float, ...]]:
+    """Return linear RGB of the body and of the parts."""
+    return [_linear(colour) for colour in (BODY, *PARTS)]
+
+
+def use_colours(colours: list[tuple[float, ...]]) -> None:
+    """From now on, take these linear RGB for the body and the parts; meshes keep theirs until they are divided anew."""
+    _in_use[:] = colours
+
+
 def colours_of_labels(n_labels: int) -> np.ndarray:
     """Return (n_labels, 4) float32 linear RGBA, row 0 the body; the colours repeat after the last."""
-    srgb = np.array([_components(PARTS[(label - 1) % len(PARTS)]) for label in range(n_labels)], dtype=np.float64)
-    srgb[:1] = _components(BODY)
-    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-    return np.column_stack([linear, np.ones(n_labels)]).astype(np.float32)
+    body, *parts = _in_use
+    rgb = [body, *(parts[label % len(parts)] for label in range(n_labels - 1))][:n_labels]
+    return np.column_stack([np.reshape(rgb, (n_labels, 3)), np.ones(n_labels)]).astype(np.float32)
 
 
 def _components(hexadecimal: str) -> tuple[float, ...]:
@@ -39,3 +48,5 @@ COMPLEX_COLOURS = {
 }
 # The property that says which of these an object of a traced complex is.
 COMPLEX_ROLE = "eigenparts_role"
+
+_in_use = standard_colours()

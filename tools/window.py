@@ -71,7 +71,9 @@ class Window:
         command = [find_application(), "--enable-event-simulate", "--python", inside, "--", address, key.hex()]
         self.log = folder / "log.txt"
         with self.log.open("w") as log:
-            self._process = subprocess.Popen(command, env={**os.environ, "DISPLAY": self._screen.name, **own}, stdout=log, stderr=log)
+            self._process = subprocess.Popen(
+                command, env={**os.environ, "DISPLAY": self._screen.name, **own}, stdout=log, stderr=log
+            )
         try:
             self._connection = self._listener.accept()
         except OSError as error:

@@ -1,0 +1,99 @@
+"""What the user prefers in all files: the colours of parts, and how many cores an analysis may take."""
+
+import bpy
+from bpy.props import FloatVectorProperty, IntProperty
+
+from . import palette, threads
+
+PACKAGE = __package__.rpartition(".")[0]
+COLOURS = tuple(f"color_{number}" for number in range(1, len(palette.PARTS) + 1))
+COLUMNS = 7
+
+
+def _colour(name: str, description: str, default: tuple[float, ...]) -> object:
+    return FloatVectorProperty(
+        name=name, description=description, subtype="COLOR", size=3, min=0, max=1, default=default, update=_take_colours
+    )
+
+
+def _take_colours(preferences: "EigenpartsPreferences", context: bpy.types.Context | None) -> None:
+    palette.use_colours([tuple(getattr(preferences, name)) for name in ("body", *COLOURS)])
+
+
+class EigenpartsPreferences(bpy.types.AddonPreferences):
+    bl_idname = PACKAGE
+
+    n_threads: IntProperty(
+        name="Threads",
+        description="Processor cores that an analysis may use; 0 leaves it to the libraries",
+        default=0,
+        min=0,
+        soft_max=64,
+    )
+    body: _colour("Body", "Color of what belongs to no part", palette.standard_colours()[0])
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "n_threads")
+        layout.label(text="Colors of parts, for those that have no color of their own")
+        grid = layout.grid_flow(row_major=True, columns=COLUMNS, even_columns=True, align=True)
+        grid.use_property_split = False
+        for name in ("body", *COLOURS):
+            grid.prop(self, name, text="")
+        layout.operator("eigenparts.reset_colors", icon="LOOP_BACK")
+
+
+# The palette decides how many there are.
+EigenpartsPreferences.__annotations__ |= {
+    name: _colour("Part", "Color of a part; after the last, the colors repeat", colour)
+    for name, colour in zip(COLOURS, palette.standard_colours()[1:], strict=True)
+}
+
+
+class EIGENPARTS_OT_reset_colors(bpy.types.Operator):
+    """Go back to the colors that colour-blind people can tell apart too"""
+
+    bl_idname = "eigenparts.reset_colors"
+    bl_label = "Reset Colors"
+    bl_options = {"INTERNAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        preferences = current()
+        if preferences is not None:
+            for name in ("body", *COLOURS):
+                preferences.property_unset(name)
+            _take_colours(preferences, context)
+        return {"FINISHED"}
+
+
+def current() -> EigenpartsPreferences | None:
+    """Return what the user prefers; None where Eigenparts is not installed as an extension, such as in a script."""
+    addon = bpy.context.preferences.addons.get(PACKAGE)
+    return addon.preferences if addon is not None else None
+
+
+def use_preferred_threads() -> None:
+    """Let the matrix libraries use as many cores as the user prefers."""
+    preferences = current()
+    if preferences is not None and preferences.n_threads:
+        threads.use_threads(preferences.n_threads)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (EIGENPARTS_OT_reset_colors, EigenpartsPreferences)
+)
+
+
+def register() -> None:
+    """Add the preferences, and take the colours from them."""
+    _register_classes()
+    preferences = current()
+    if preferences is not None:
+        _take_colours(preferences, None)
+
+
+def unregister() -> None:
+    """Remove the preferences."""
+    _unregister_classes()
+    palette.use_colours(palette.standard_colours())
