@@ -8,6 +8,7 @@ register, unregister = bpy.utils.register_submodule_factory(
         "properties",
         "preferences",
         "analyze",
+        "add_analysis_preset",
         "segment",
         "select_part",
         "cancel",

@@ -83,4 +83,5 @@ def _place(filename: str) -> str:
 def _sentence(error: Exception) -> str:
     if isinstance(error, MemoryError):
         return OUT_OF_MEMORY
-    return f"Something went wrong that should not ({type(error).__name__}). Copy Bug Report has the details; please report it."
+    kind = type(error).__name__
+    return f"Something went wrong that should not ({kind}). Copy Bug Report has the details; please report it."

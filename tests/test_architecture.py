@@ -14,13 +14,13 @@ MAY_IMPORT = {
     "compute": set(),
     "operators": {"compute"},
     "cli": {"compute", "operators"},
-    "ui": {"operators.state", "operators.palette", "operators.registered"},
+    "ui": {"operators.state", "operators.palette", "operators.registered", "operators.faults"},
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},
-    "operators": {"bmesh", "bpy", "numpy"},
+    "operators": {"bl_operators", "bmesh", "bpy", "numpy"},
     "cli": {"bpy", "numpy"},
-    "ui": {"bpy", "gpu", "gpu_extras", "mathutils"},
+    "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils"},
 }
 
 # A part of the engine may import only parts that stand before it: the path of the data, read from left to right.

@@ -94,6 +94,7 @@ class EIGENPARTS_PT_topology(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Eigenparts"
+    bl_order = 60
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -1,74 +1,105 @@
-"""Sidebar tab: analyze, move the level, look at the parts."""
+"""Sidebar tab: analyze, move the level, look at the parts, choose what they are written to."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as translated
 
-from ..operators import state
+from ..operators import faults, registered, state
+from .analysis_presets import EIGENPARTS_PT_analysis_presets
+from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis, draw_sentence
 
-# More rows than this would push everything else out of sight.
-MOST_ROWS = 24
-
-
-class EigenpartsPanel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Eigenparts"
+# Rows of the list, always the same, so that nothing below it jumps when the level moves.
+N_ROWS = 8
 
 
 class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
     bl_label = "Analyze"
+    bl_order = 0
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        status = context.window_manager.eigenparts
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.enabled = not status.is_running
+        _draw_field(column, context.scene.eigenparts)
+        row = layout.row(align=True)
+        if status.is_running:
+            row.progress(factor=status.fraction, text=status.text)
+            row.operator("eigenparts.cancel", text="", icon="X")
+        else:
+            row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
+            row.operator("eigenparts.clear", text="", icon="TRASH")
+        fault = faults.last()
+        if fault is not None:
+            draw_sentence(layout, fault.sentence, context.region.width)
+            layout.operator("eigenparts.copy_report", icon="COPYDOWN")
+
+
+class EIGENPARTS_PT_options(EigenpartsPanel, bpy.types.Panel):
+    bl_label = "Options"
+    bl_parent_id = "EIGENPARTS_PT_analyze"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        EIGENPARTS_PT_analysis_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        status = context.window_manager.eigenparts
-        if status.is_running:
-            row = layout.row(align=True)
-            row.progress(factor=status.fraction, text=status.text)
-            row.operator("eigenparts.cancel", text="", icon="X")
+        layout.enabled = not context.window_manager.eigenparts.is_running
+        settings = context.scene.eigenparts
+        layout.prop(settings, "order")
+        layout.prop(settings, "boundary")
+        layout.prop(settings, "use_modifiers")
+
+
+class EIGENPARTS_PT_level(EigenpartsPanel, bpy.types.Panel):
+    bl_label = "Level"
+    bl_order = 10
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, mesh = self.layout, analyzed_mesh(context)
+        if mesh is None:
+            draw_missing_analysis(layout, context)
+            return
+        try:
+            summary = state.summarize(mesh)
+        except state.Refusal as refusal:
+            draw_sentence(layout, str(refusal), context.region.width)
         else:
-            _draw_options(layout, context)
-            layout.operator("eigenparts.analyze", icon="MOD_EXPLODE")
+            _draw_level(layout, mesh, summary)
+        status = context.window_manager.eigenparts
+        if status.problem and status.problem_of == mesh.name_full:
+            draw_sentence(layout, status.problem, context.region.width)
 
 
 class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
     bl_label = "Parts"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return _is_analyzed(context)
+    bl_order = 20
 
     def draw(self, context: bpy.types.Context) -> None:
-        mesh = context.object.data
-        try:
-            summary = state.summarize(mesh)
-        except state.Refusal as refusal:
-            _draw_sentence(self.layout, str(refusal), context.region.width)
-        else:
-            _draw_level(self.layout, mesh, summary)
-            _draw_parts(self.layout, mesh)
-        status = context.window_manager.eigenparts
-        if status.problem and status.problem_of == mesh.name_full:
-            _draw_sentence(self.layout, status.problem, context.region.width)
-        self.layout.operator("eigenparts.clear", icon="TRASH")
+        mesh = analyzed_mesh(context)
+        if mesh is None:
+            draw_missing_analysis(self.layout, context)
+            return
+        rows = {"rows": N_ROWS, "maxrows": N_ROWS}
+        settings = mesh.eigenparts
+        self.layout.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", **rows)
 
 
 class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
     bl_label = "Output"
-    bl_parent_id = "EIGENPARTS_PT_parts"
+    bl_order = 70
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.object.data.eigenparts
-        column = self.layout.column(heading="")
-        for name in ("vertex_attribute", "corner_colors", "face_sets", "vertex_groups"):
-            column.prop(settings, name)
-        softness = column.row()
-        softness.active = settings.vertex_groups
-        softness.prop(settings, "softness")
-        column.prop(settings, "materials")
-        column.prop(settings, "field")
-        column.operator("eigenparts.write_eigenfunctions", text="Eigenfunctions")
+        mesh = analyzed_mesh(context)
+        if mesh is None:
+            draw_missing_analysis(self.layout, context)
+            return
+        _draw_outputs(self.layout.column(), mesh.eigenparts)
         column = self.layout.column(align=True)
         cuts = column.row(align=True)
         cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN").method = "INSERT"
@@ -76,25 +107,16 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
         column.operator("eigenparts.separate", icon="MOD_EXPLODE")
 
 
-def _is_analyzed(context: bpy.types.Context) -> bool:
-    obj = context.object
-    return obj is not None and obj.type == "MESH" and state.is_analyzed(obj.data)
-
-
-def _draw_options(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    settings = context.scene.eigenparts
+def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     layout.prop(settings, "field")
     if settings.field == "EIGENFUNCTION":
         layout.prop(settings, "eigenfunction")
     if settings.field == "ATTRIBUTE":
         layout.prop(settings, "attribute")
-    layout.prop(settings, "order")
-    layout.prop(settings, "boundary")
-    layout.prop(settings, "use_modifiers")
 
 
 def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, summary: state.Summary) -> None:
-    layout.label(text=f"{summary.description}, levels 0 to {summary.n_levels - 1}")
+    layout.label(text=_told(mesh, summary), translate=False)
     layout.row().prop(mesh.eigenparts, "mode", expand=True)
     column = layout.column(align=True)
     column.prop(mesh.eigenparts, "level")
@@ -102,25 +124,27 @@ def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, summary: state
     column.operator("eigenparts.segment", text="Default Level", icon="LOOP_BACK")
 
 
-def _draw_parts(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
-    settings = mesh.eigenparts
-    layout.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", rows=6, maxrows=MOST_ROWS)
+def _told(mesh: bpy.types.Mesh, summary: state.Summary) -> str:
+    """Return where the parts come from."""
+    match = registered.read(mesh)
+    if match is not None:
+        return translated("Parts of {name}").format(name=match.reference)
+    return translated("{field}, levels 0 to {highest}").format(
+        field=translated(summary.description), highest=summary.n_levels - 1
+    )
 
 
-def _draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
-    """Draw a sentence in as many lines as the sidebar needs."""
-    n_letters = max(20, int(width / (7 * bpy.context.preferences.system.ui_scale)))
-    column = layout.column(align=True)
-    column.alert = True
-    line = ""
-    for word in sentence.split():
-        if len(line) + len(word) >= n_letters:
-            column.label(text=line)
-            line = ""
-        line = f"{line} {word}".strip()
-    column.label(text=line)
+def _draw_outputs(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    for name in ("vertex_attribute", "corner_colors", "face_sets", "vertex_groups"):
+        column.prop(settings, name)
+    softness = column.row()
+    softness.active = settings.vertex_groups
+    softness.prop(settings, "softness")
+    column.prop(settings, "materials")
+    column.prop(settings, "field")
+    column.operator("eigenparts.write_eigenfunctions", text="Eigenfunctions")
 
 
 register, unregister = bpy.utils.register_classes_factory(
-    (EIGENPARTS_PT_analyze, EIGENPARTS_PT_parts, EIGENPARTS_PT_outputs)
+    (EIGENPARTS_PT_analyze, EIGENPARTS_PT_options, EIGENPARTS_PT_level, EIGENPARTS_PT_parts, EIGENPARTS_PT_outputs)
 )

@@ -1,0 +1,8 @@
+import bpy
+
+settings = bpy.context.scene.eigenparts
+settings.field = "EIGENFUNCTION"
+settings.eigenfunction = 1
+settings.order = "AUTO"
+settings.boundary = "NEUMANN"
+settings.use_modifiers = False

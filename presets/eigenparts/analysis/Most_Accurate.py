@@ -1,0 +1,8 @@
+import bpy
+
+settings = bpy.context.scene.eigenparts
+settings.field = "DIFFUSION"
+settings.eigenfunction = 1
+settings.order = "3"
+settings.boundary = "NEUMANN"
+settings.use_modifiers = False

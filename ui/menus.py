@@ -1,0 +1,53 @@
+"""Object menu: all actions in one submenu, which also puts them into the menu search (F3)."""
+
+import bpy
+
+# In the order of the work; None is a line between two groups.
+ENTRIES = (
+    ("eigenparts.analyze", "MOD_EXPLODE"),
+    ("eigenparts.segment", "LOOP_BACK"),
+    None,
+    ("eigenparts.register_selected", "LINKED"),
+    None,
+    ("eigenparts.cut", "MOD_BOOLEAN"),
+    ("eigenparts.separate", "MOD_EXPLODE"),
+    ("eigenparts.write_outputs", "OUTPUT"),
+    ("eigenparts.write_eigenfunctions", "GRAPH"),
+    None,
+    ("eigenparts.plot_diagram", "IMAGE_DATA"),
+    ("eigenparts.trace_complex", "OUTLINER_OB_CURVE"),
+    None,
+    ("eigenparts.clear", "TRASH"),
+    ("eigenparts.copy_report", "COPYDOWN"),
+)
+
+
+class EIGENPARTS_MT_object(bpy.types.Menu):
+    bl_label = "Eigenparts"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        for entry in ENTRIES:
+            if entry is None:
+                self.layout.separator()
+            else:
+                self.layout.operator(entry[0], icon=entry[1])
+
+
+def _draw_entry(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    menu.layout.menu("EIGENPARTS_MT_object")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((EIGENPARTS_MT_object,))
+
+
+def register() -> None:
+    """Add the submenu to the Object menu."""
+    _register_classes()
+    bpy.types.VIEW3D_MT_object.append(_draw_entry)
+
+
+def unregister() -> None:
+    """Take it away."""
+    bpy.types.VIEW3D_MT_object.remove(_draw_entry)
+    _unregister_classes()

@@ -1,0 +1,45 @@
+"""What the panels of the sidebar tab have in common."""
+
+import bpy
+
+from ..operators import state
+
+# What is said where there is nothing to show yet.
+NO_MESH = "Select a mesh object first."
+
+
+class EigenpartsPanel:
+    """A panel of the tab; ``bl_order`` puts them in the order of the work."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Eigenparts"
+
+
+def analyzed_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
+    """Return the active mesh if it is analyzed."""
+    obj = context.object
+    is_analyzed = obj is not None and obj.type == "MESH" and state.is_analyzed(obj.data)
+    return obj.data if is_analyzed else None
+
+
+def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Say why the panel is empty."""
+    is_mesh = context.object is not None and context.object.type == "MESH"
+    row = layout.row()
+    row.active = False
+    row.label(text=state.ABSENT if is_mesh else NO_MESH)
+
+
+def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
+    """Draw a sentence in as many lines as the sidebar needs."""
+    n_letters = max(20, int(width / (7 * bpy.context.preferences.system.ui_scale)))
+    column = layout.column(align=True)
+    column.alert = True
+    line = ""
+    for word in bpy.app.translations.pgettext_rpt(sentence).split():
+        if len(line) + len(word) >= n_letters:
+            column.label(text=line, translate=False)
+            line = ""
+        line = f"{line} {word}".strip()
+    column.label(text=line, translate=False)
