@@ -17,12 +17,13 @@ def main(argv: Sequence[str]) -> int:
         return 1
     # The engine takes its time to load, and Blender starts often without this being called.
     from .arguments import parse
+    from .run import carry_out
 
     try:
         options = parse(list(argv))
     except SystemExit as exit_request:
         return int(exit_request.code or 0)
-    return options.run(options, sys.stdout, sys.stderr)
+    return carry_out(options, sys.stdout, sys.stderr)
 
 
 def register() -> None:

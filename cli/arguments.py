@@ -1,27 +1,86 @@
 """What the command line understands."""
 
 import argparse
+import shlex
 from pathlib import Path
 
-from . import segment
 from .formats import FORMATS
+
+EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
+FILE_KINDS = f"Formats: {' '.join(FORMATS)}."
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
-    """Return the options; ``.run(options, out, err)`` carries the command out."""
-    parser = argparse.ArgumentParser(prog="eigenparts", description="Divide meshes into meaningful parts.")
+    """Return the options; ``.command`` is the name of the command."""
+    about = "Divide meshes into meaningful parts."
+    parser = argparse.ArgumentParser(prog="eigenparts", description=about, epilog=EXIT_CODES)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    _add_segment(commands)
-    return parser.parse_args(argv)
+    for add in (_add_segment, _add_register, _add_batch):
+        add(commands)
+    options = parser.parse_args(argv)
+    if options.command == "register" and options.source is None:
+        options.source = options.files[0]
+    return options
 
 
-def _add_segment(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    command = commands.add_parser(
-        "segment",
-        help="divide each mesh into parts",
-        description=f"Divide each mesh of each file into parts. Formats: {' '.join(FORMATS)}.",
+Commands = "argparse._SubParsersAction[argparse.ArgumentParser]"
+
+
+def _add_segment(commands: Commands) -> None:
+    told = "divide each mesh into parts"
+    command = commands.add_parser("segment", help=told, description=f"Divide each mesh of each file. {FILE_KINDS}")
+    _add_files(command)
+    _add_division(command)
+    _add_execution(command)
+    command.set_defaults(command="segment", source=None, reference=None, mirrored=False)
+
+
+def _add_register(commands: Commands) -> None:
+    told = "divide each mesh into the parts of a reference"
+    about = (
+        f"Divide each mesh of each file into the parts of one of them: equal numbers are the same part. {FILE_KINDS}"
     )
+    command = commands.add_parser("register", help=told, description=about)
+    _add_files(command)
+    command.add_argument("--source", metavar="FILE", type=Path, help="file of the reference; otherwise the first file")
+    _add_reference(command)
+    _add_division(command)
+    _add_execution(command)
+    command.set_defaults(command="register")
+
+
+def _add_batch(commands: Commands) -> None:
+    told = "do all files of folders, but for those that were finished before"
+    about = f"Divide all files below folders, or register them if there is a --source. {FILE_KINDS}"
+    command = commands.add_parser("batch", help=told, description=about)
+    command.add_argument("folders", metavar="FOLDER", nargs="+", type=Path)
+    command.add_argument(
+        "--glob",
+        metavar="PATTERN",
+        action="append",
+        default=[],
+        help="only files like this, such as '*.obj' or 'people/*'; may be given several times",
+    )
+    command.add_argument("--again", action="store_true", help="do the finished files, too")
+    command.add_argument("--source", metavar="FILE", type=Path, help="file of a reference to register all files to")
+    _add_reference(command)
+    _add_division(command)
+    _add_execution(command)
+    command.set_defaults(command="batch")
+
+
+def _add_files(command: argparse.ArgumentParser) -> None:
     command.add_argument("files", metavar="FILE", nargs="+", type=Path)
+
+
+def _add_reference(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--reference", metavar="NAME", help="object of that file that is the reference; else the first"
+    )
+    command.add_argument("--mirrored", action="store_true", help="the files are mirror images of the reference")
+
+
+def _add_division(command: argparse.ArgumentParser) -> None:
     command.add_argument("--object", metavar="NAME", help="only this object of each file")
     command.add_argument(
         "--field",
@@ -36,9 +95,28 @@ def _add_segment(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
     command.add_argument(
         "--mode",
         choices=["nested", "features"],
-        default="nested",
         help="parts inside parts (default), or only what stands out at this level",
     )
+
+
+def _add_execution(command: argparse.ArgumentParser) -> None:
     command.add_argument("--output", metavar="DIR", type=Path, help="folder for results; otherwise beside each file")
-    command.add_argument("--json", action="store_true", help="print the report as JSON")
-    command.set_defaults(run=segment.run)
+    told = command.add_mutually_exclusive_group()
+    told.add_argument("--json", action="store_true", help="print the report as JSON")
+    told.add_argument("--json-lines", action="store_true", help="print a report for each file as soon as it is done")
+    crew = command.add_mutually_exclusive_group()
+    crew.add_argument("--jobs", metavar="N", type=_positive, help="do the files in N processes")
+    crew.add_argument("--scheduler", metavar="ADDRESS", help="do the files on a dask cluster, such as tcp://host:8786")
+    command.add_argument(
+        "--worker-command",
+        metavar="COMMAND",
+        type=shlex.split,
+        help="what starts this command line on the machines of the cluster; otherwise the same as here",
+    )
+
+
+def _positive(text: str) -> int:
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError("must be at least 1")
+    return number

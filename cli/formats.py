@@ -9,6 +9,7 @@ import bpy
 from ..operators.refusals import Refusal
 from .materials import give_parts_materials
 from .off import read_off, write_off
+from .staging import staged
 
 
 @dataclass(frozen=True)
@@ -35,13 +36,18 @@ def load(path: Path) -> list[bpy.types.Object]:
     return sorted(objects.values(), key=lambda obj: obj.name)
 
 
-def save(source: Path, folder: Path) -> Path:
-    """Write what is open now beside its source or into a folder, and return where."""
-    file_format = FORMATS[source.suffix.lower()]
-    folder.mkdir(parents=True, exist_ok=True)
-    target = folder / f"{source.stem}_parts{file_format.output_suffix}"
-    file_format.write(target)
-    return target
+def target_of(source: Path, folder: Path) -> Path:
+    """Return where the result for a file goes: its format is part of the name if the result has another one."""
+    known = FORMATS.get(source.suffix.lower())
+    suffix = known.output_suffix if known else source.suffix
+    kept = source.suffix.lower() == suffix
+    return folder / f"{source.stem if kept else source.name.replace('.', '_')}_parts{suffix}"
+
+
+def save(source: Path, target: Path) -> None:
+    """Write what is open now, in the format for its source."""
+    with staged(target) as stage:
+        FORMATS[source.suffix.lower()].write(stage)
 
 
 def _read_blend(path: Path) -> None:
@@ -49,7 +55,10 @@ def _read_blend(path: Path) -> None:
 
 
 def _write_blend(path: Path) -> None:
-    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, check_existing=False)
+    # The file is written one folder below its place, so Blender must not adapt the paths inside it.
+    if bpy.data.filepath and Path(bpy.data.filepath).parent.resolve() != path.parent.parent.resolve():
+        bpy.ops.file.make_paths_absolute()
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, check_existing=False, relative_remap=False)
 
 
 def _read_obj(path: Path) -> None:

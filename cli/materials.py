@@ -1,27 +1,29 @@
 """Give every part a material, for the formats that know nothing else of parts."""
 
 import bpy
+import numpy as np
 
+from ..operators import part_table, state
 from ..operators.exchange import read_own_integers
-from ..operators.palette import colours_of_labels
 from ..operators.results import PART
-from .names import name_of_part
+from .names import name_of_part, names_of_parts
 
 
 def give_parts_materials() -> None:
     """Replace the materials of all divided meshes that are open, one for each part."""
     for mesh in {obj.data for obj in bpy.data.objects if obj.type == "MESH"}:
-        if PART.name in mesh.attributes:
+        if state.is_analyzed(mesh) and PART.name in mesh.attributes:
             _give_materials(mesh)
 
 
 def _give_materials(mesh: bpy.types.Mesh) -> None:
     labels = read_own_integers(mesh, PART)
-    n_labels = int(labels.max(initial=0)) + 1
+    present, material_index = np.unique(labels, return_inverse=True)
+    colours, given = part_table.colours(mesh, int(labels.max(initial=0)) + 1), names_of_parts(mesh)
     mesh.materials.clear()
-    for label, colour in enumerate(colours_of_labels(n_labels).tolist()):
-        mesh.materials.append(_material(name_of_part(label), colour))
-    mesh.polygons.foreach_set("material_index", labels)
+    for label in present.tolist():
+        mesh.materials.append(_material(name_of_part(label, given), colours[label].tolist()))
+    mesh.polygons.foreach_set("material_index", np.int32(material_index.reshape(-1)))
 
 
 def _material(name: str, colour: list[float]) -> bpy.types.Material:

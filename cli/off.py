@@ -5,8 +5,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ..operators import part_table, state
 from ..operators.exchange import read_own_integers
-from ..operators.palette import colours_of_labels
 from ..operators.refusals import Refusal
 from ..operators.results import PART
 
@@ -49,8 +49,8 @@ def write_off(path: Path) -> None:
     """Write the meshes of the scene as one, each polygon in the colour of its part."""
     vertices, polygons = [], []
     for obj in (obj for obj in bpy.data.objects if obj.type == "MESH"):
-        labels = read_own_integers(obj.data, PART)
-        colours = _bytes_of_labels(int(labels.max(initial=0)) + 1)
+        labels = _labels(obj.data)
+        colours = _bytes_of_labels(obj.data, int(labels.max(initial=0)) + 1)
         for polygon, label in zip(obj.data.polygons, labels.tolist(), strict=True):
             corners = " ".join(str(len(vertices) + index) for index in polygon.vertices)
             polygons.append(f"{polygon.loop_total} {corners} {colours[label]}")
@@ -59,8 +59,14 @@ def write_off(path: Path) -> None:
     path.write_text("\n".join(["OFF", f"{len(vertices)} {len(polygons)} 0", *vertices, *polygons]) + "\n")
 
 
-def _bytes_of_labels(n_labels: int) -> list[str]:
+def _labels(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the part of each face; all body where the mesh is not divided."""
+    divided = state.is_analyzed(mesh) and PART.name in mesh.attributes
+    return read_own_integers(mesh, PART) if divided else np.zeros(len(mesh.polygons), dtype=int)
+
+
+def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:
     """Return the colour of each label as the format wants it, "230 159 0"."""
-    linear = colours_of_labels(n_labels)[:, :3]
+    linear = part_table.colours(mesh, n_labels)[:, :3]
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return [" ".join(map(str, row)) for row in np.rint(255 * srgb).astype(int).tolist()]

@@ -36,11 +36,10 @@ def star_file(request, tmp_path):
 
 def test_every_format_is_read_and_written_back(run, star_file):
     code, report, errors = run("segment", star_file, "--json")
-    (row,) = report["files"][0]["objects"]
+    (row,), suffix = report["files"][0]["objects"], star_file.suffix
     assert (code, errors) == (0, [])
     assert [part["name"] for part in row["parts"]] == ["body", "part_1", "part_2", "part_3", "part_4", "part_5"]
-    suffix = ".blend" if star_file.suffix == ".stl" else star_file.suffix
-    written = star_file.with_name(f"star_parts{suffix}")
+    written = star_file.with_name("star_stl_parts.blend" if suffix == ".stl" else f"star_parts{suffix}")
     assert report["files"][0]["output"] == str(written)
     assert written.stat().st_size > 0
 

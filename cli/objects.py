@@ -1,0 +1,64 @@
+"""What commands have in common that work on each mesh of a file."""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from ..compute.errors import EngineError
+from ..compute.segmentation.parts import BranchLabels
+from ..operators import state
+from ..operators.analysis_request import analysis_options
+from ..operators.analyze import Outcome
+from ..operators.refusals import Refusal
+from .report import Report, part_rows
+
+
+def chosen(objects: list[bpy.types.Object], name: str | None) -> list[bpy.types.Object]:
+    """Return the object of that name, or all if there is none."""
+    found = [obj for obj in objects if name in (None, obj.name)]
+    if not found:
+        raise Refusal(f"there is no mesh object {name!r}; there are {', '.join(obj.name for obj in objects)}.")
+    return found
+
+
+def report_each(objects: list[bpy.types.Object], work: Callable[[bpy.types.Object], Report]) -> list[Report]:
+    """Return a row for each object; what is wrong with one does not stop the others of its file."""
+    return [_report(obj, work) for obj in objects]
+
+
+def settings_of_field(field: str) -> dict[str, Any]:
+    """Return the settings of the analysis for what was given as ``--field``."""
+    kind = "DIFFUSION" if field == "diffusion" else "EIGENFUNCTION" if field.isdecimal() else "ATTRIBUTE"
+    number = int(field) if kind == "EIGENFUNCTION" else 1
+    attribute = field if kind == "ATTRIBUTE" else ""
+    return {"field": kind, "eigenfunction": number, "attribute": attribute, "order": "AUTO", "boundary": "NEUMANN"}
+
+
+def engine_options(mesh: bpy.types.Mesh, field: str) -> dict[str, Any]:
+    """Return the keyword arguments of the engine for what was given as ``--field``."""
+    return analysis_options(mesh, **settings_of_field(field))
+
+
+def store(mesh: bpy.types.Mesh, outcome: Outcome) -> None:
+    """Put an analysis on its mesh."""
+    state.store(mesh, outcome.stored, outcome.source, outcome.description)
+
+
+def row_of(obj: bpy.types.Object, labels: BranchLabels, outcome: Outcome) -> Report:
+    """Return what the report says of a divided object."""
+    return {
+        "name": obj.name,
+        "level": labels.level,
+        "n_levels": outcome.stored.hierarchy.n_levels,
+        "parts": part_rows(obj.data, labels),
+        "seconds": round(outcome.seconds, 3),
+        "warnings": [*outcome.warnings, *labels.warnings],
+    }
+
+
+def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], Report]) -> Report:
+    try:
+        return work(obj)
+    except (Refusal, EngineError) as refusal:
+        return {"name": obj.name, "error": str(refusal)}

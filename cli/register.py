@@ -1,0 +1,144 @@
+"""The command ``register``: each mesh divided into the parts of a reference."""
+
+import argparse
+import time
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..operators import engine, exchange, registered, results, state
+from ..operators.analyze import Outcome, outcome_of
+from ..operators.refusals import Refusal
+from ..operators.registering import match_of
+from ..operators.registration import Found, Wish, register_analyzed
+from . import formats
+from .finished import digest_of
+from .objects import chosen, engine_options, report_each, row_of, settings_of_field, store
+from .report import Report
+from .segment import choice_of
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The object whose parts all others get.
+
+    Attributes
+    ----------
+    name : str
+        Of the object.
+    outcome : Outcome
+        Of its analysis.
+    level : int
+    mode : str
+        What it shows.
+    prepared : engine.Reference
+        What others are matched with.
+    tables : dict
+        Names and colours of its parts.
+    """
+
+    name: str
+    outcome: Outcome
+    level: int
+    mode: str
+    prepared: "engine.Reference"
+    tables: dict[str, Any]
+
+    @property
+    def highest_label(self) -> int:
+        """The last of the labels that all share."""
+        return int(self.prepared.parts.segmentation.parts.id.max())
+
+
+class Register:
+    """Registers files with the options of one call; the reference is prepared when it is first needed."""
+
+    def __init__(self, options: argparse.Namespace) -> None:
+        self._options = options
+        self._wish = Wish(mirrored=options.mirrored)
+        self._first_free = 0
+
+    @cached_property
+    def settings(self) -> Report:
+        """What the results depend on besides the files."""
+        options = self._options
+        if not options.source.is_file():
+            raise Refusal(f"the reference {options.source}: there is no such file.")
+        source = {"file": options.source.name, "digest": digest_of(options.source), "object": options.reference}
+        given = {"object": options.object, "field": options.field, "mode": options.mode, "mirrored": options.mirrored}
+        return {"command": "register", **given, "choice": choice_of(options), "source": source}
+
+    def open_and_divide(self, path: Path) -> list[Report]:
+        """Leave a file open with its meshes divided, and return a row for each."""
+        # The reference opens a file of its own, so it comes first.
+        reference = self._reference
+        objects = chosen(formats.load(path), self._options.object)
+        if path.resolve() != self._options.source.resolve():
+            return report_each(objects, self._divide)
+        return report_each(objects, lambda obj: self._show(obj) if obj.name == reference.name else self._divide(obj))
+
+    @cached_property
+    def _reference(self) -> Reference:
+        try:
+            return _prepare(self._options)
+        except (Refusal, engine.EngineError) as error:
+            raise Refusal(f"the reference {self._options.source}: {error}") from error
+
+    def _show(self, obj: bpy.types.Object) -> Report:
+        """Divide the reference itself."""
+        store(obj.data, self._reference.outcome)
+        labels = results.segment_mesh(obj.data, level=self._reference.level, mode=self._reference.mode)
+        return row_of(obj, labels, self._reference.outcome)
+
+    def _divide(self, obj: bpy.types.Object) -> Report:
+        results.refuse_foreign_results(obj.data)
+        analysis, outcome = _analyze(obj.data, self._options.field)
+        first_free = max(self._first_free, self._reference.highest_label + 1)
+        found = register_analyzed(self._reference.prepared, analysis, outcome, self._wish, first_free)
+        self._first_free = max(first_free, int(found.labels.parts.id.max()) + 1)
+        self._write(obj.data, found)
+        row = row_of(obj, found.labels, outcome)
+        for part in row["parts"]:
+            part["matched"] = part["id"] <= self._reference.highest_label
+        return row | {"reference": self._reference.name, "confidence": round(float(found.matching.confidence), 4)}
+
+    def _write(self, mesh: bpy.types.Mesh, found: Found) -> None:
+        settings = {**settings_of_field(self._options.field), "use_modifiers": False}
+        store(mesh, found.outcome)
+        registered.remember(mesh, self._reference.tables, match_of(found, self._reference.name, self._wish, settings))
+        results.show_labels(mesh, found.labels, found.outcome.stored.branches, self._reference.mode)
+
+
+def _prepare(options: argparse.Namespace) -> Reference:
+    obj = chosen(formats.load(options.source), options.reference)[0]
+    mesh = obj.data
+    results.refuse_foreign_results(mesh)
+    registered.refuse_registered(mesh)
+    mode = options.mode or state.mode_of(mesh)
+    shown = _shown_level(mesh)
+    analysis, outcome = _analyze(mesh, options.field)
+    choice = choice_of(options) or ({"level": shown} if shown is not None else {})
+    segmentation = analysis.segment(**choice, mode=mode)
+    store(mesh, outcome)
+    results.segment_mesh(mesh, level=segmentation.level, mode=mode)
+    prepared = engine.prepare_reference(analysis, segmentation)
+    return Reference(obj.name, outcome, segmentation.level, mode, prepared, registered.tables_of(mesh))
+
+
+def _shown_level(mesh: bpy.types.Mesh) -> int | None:
+    """Return the level of a mesh that was divided before, as it was left by the user."""
+    try:
+        state.load(mesh)
+        return state.summarize(mesh).level
+    except Refusal:
+        return None
+
+
+def _analyze(mesh: bpy.types.Mesh, field: str) -> tuple["engine.Analysis", Outcome]:
+    start = time.perf_counter()
+    arrays, options = exchange.read_mesh(mesh), engine_options(mesh, field)
+    analysis = engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options)
+    return analysis, outcome_of(analysis, arrays, options, time.perf_counter() - start)

@@ -1,0 +1,76 @@
+"""What is said of each file: a report that programs read, and a line for people."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..compute.errors import EngineError
+from ..compute.segmentation.parts import BranchLabels
+from ..operators.refusals import Refusal
+from .names import name_of_part, names_of_parts
+from .staging import staged
+
+# Raised when the layout of the report changes; report.schema.json describes it.
+VERSION = 1
+Report = dict[str, Any]
+
+
+def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels) -> list[Report]:
+    """Return the table of parts of a divided mesh."""
+    parts, given = labels.parts, names_of_parts(mesh)
+    columns = (parts.id.tolist(), parts.parent.tolist(), parts.area.tolist(), parts.n_triangles.tolist())
+    return [
+        {"id": part, "name": name_of_part(part, given), "parent": parent, "area": area, "faces": n_faces}
+        for part, parent, area, n_faces in zip(*columns, strict=True)
+    ]
+
+
+def problem_of(error: Exception) -> str:
+    """Return one line about what went wrong with a file."""
+    if isinstance(error, Refusal | EngineError):
+        return str(error)
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.strerror}: {error.filename}." if error.filename else f"{error.strerror}."
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for this file."
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def problems_of(rows: Iterable[Report]) -> str:
+    """Return one line about the objects of a file that failed, empty if none did."""
+    return " ".join(f"{row['name']}: {row['error']}" for row in rows if "error" in row)
+
+
+def path_beside(target: Path) -> Path:
+    """Return where the report of a result is kept."""
+    return target.with_name(target.name + ".json")
+
+
+def write_beside(target: Path, report: Report) -> None:
+    """Keep a report with its result."""
+    with staged(path_beside(target)) as stage:
+        stage.write_text(as_line(report) + "\n", encoding="utf-8")
+
+
+def as_line(report: Report) -> str:
+    """Return the report of one file as JSON on one line."""
+    return json.dumps({"version": VERSION, **report})
+
+
+def as_document(reports: list[Report]) -> str:
+    """Return the report of all files as JSON."""
+    return json.dumps({"version": VERSION, "files": reports}, indent=2)
+
+
+def sentence(report: Report) -> str:
+    """Return what people want to know of a file that went well."""
+    counts = ", ".join(_counts(row) for row in report["objects"] if "parts" in row)
+    return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}"
+
+
+def _counts(row: Report) -> str:
+    sureness = f" ({row['confidence']:.0%} sure)" if "confidence" in row else ""
+    return f"{row['name']}: {len(row['parts'])} parts{sureness}"

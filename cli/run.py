@@ -1,0 +1,74 @@
+"""Carry a command out: which files, by whom, and what is told of each."""
+
+import argparse
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from typing import TextIO
+
+from ..operators.refusals import Refusal
+from . import batch
+from .jobs import Job, in_the_way, jobs_of_files
+from .processes import cluster_crew, local_crew
+from .register import Register
+from .report import Report
+from .segment import Segment
+from .telling import ProgressLine, teller_for
+from .work import Command, failed, work_here
+
+
+def carry_out(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
+    """Do what was asked for, tell about each file, and return 1 if any failed."""
+    do = _run_batch if options.command == "batch" else _run_files
+    try:
+        return do(options, out, err)
+    except Refusal as refusal:
+        err.write(f"{refusal}\n")
+    except KeyboardInterrupt:
+        err.write("Interrupted; what is finished stays.\n")
+    return 1
+
+
+def _run_files(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
+    """Do the files that were named, tell about each, and return 1 if any failed."""
+    jobs = jobs_of_files(options.files, options.output)
+    return _tell(_reports(jobs, options), options, out, err)
+
+
+def _run_batch(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
+    """Do what is not finished below the folders that were named, tell about each file, and return 1 if any failed."""
+    jobs = batch.find_jobs(options)
+    finished = {} if options.again else batch.finished_reports(jobs, _command(options).settings)
+    unfinished = [job for job in jobs if job not in finished]
+    line = ProgressLine(err, len(unfinished), len(finished))
+    return _tell(chain(finished.values(), line.counting(_reports(unfinished, options))), options, out, err)
+
+
+def _tell(reports: Iterable[Report], options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
+    teller, any_failed = teller_for(options, out), False
+    for report in reports:
+        if "error" in report:
+            any_failed = True
+            err.write(f"{report['file']}: {report['error']}\n")
+        teller.tell(report)
+    teller.close()
+    return int(any_failed)
+
+
+def _reports(jobs: list[Job], options: argparse.Namespace) -> Iterator[Report]:
+    """Yield the report of each file when it is done."""
+    blocked = in_the_way(jobs)
+    for job, earlier in blocked.items():
+        yield failed(job, f"its result would replace that of {earlier}; give them different folders.")
+    free = [job for job in jobs if job not in blocked]
+    if options.scheduler:
+        with cluster_crew(options) as crew:
+            yield from crew.work(free)
+    elif options.jobs:
+        with local_crew(options) as crew:
+            yield from crew.work(free)
+    else:
+        yield from work_here(free, _command(options))
+
+
+def _command(options: argparse.Namespace) -> Command:
+    return Register(options) if options.source else Segment(options)
