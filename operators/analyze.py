@@ -48,11 +48,11 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
-        state.store(mesh, outcome.stored, outcome.source, outcome.description)
+        told = state.store(mesh, outcome.stored, outcome.source, outcome.description)
         labels = results.segment_mesh(mesh)
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
-        for warning in (*outcome.warnings, *labels.warnings):
+        for warning in (*outcome.warnings, *told, *labels.warnings):
             self.report({"WARNING"}, warning)
         self.report({"INFO"}, _told(len(labels.parts), outcome.seconds))
         return {"FINISHED"}

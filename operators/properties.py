@@ -16,9 +16,11 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import engine, outputs, part_table, results, state
+from . import correcting, engine, outputs, part_table, results, state
+from .move_border import move_border, offset_of
 from .refusals import Refusal
 from .select_part import select_faces_of
+from .set_branch_level import set_branch_level
 
 # In the order of state.MODES.
 MODE_ITEMS = [
@@ -159,6 +161,43 @@ def _select_row(settings: "EigenpartsMeshSettings", context: bpy.types.Context) 
         _told(settings.id_data, select_faces_of, settings.rows[settings.active_row].part)
 
 
+class EigenpartsCorrectionRow(bpy.types.PropertyGroup):
+    """A correction in the list of the panel."""
+
+    place: IntProperty(name="Correction", description="Its place in the list, from 0")
+    title: StringProperty(name="Correction")
+    rests: BoolProperty(name="Rests", description="This level has not the parts it belongs to, so it does nothing now")
+
+
+def active_part(settings: "EigenpartsMeshSettings") -> int:
+    """Return the number of the part that is active in the list, 0 if none is."""
+    is_there = 0 <= settings.active_row < len(settings.rows)
+    return settings.rows[settings.active_row].part if is_there else 0
+
+
+def _part_level(settings: "EigenpartsMeshSettings") -> int:
+    part = active_part(settings)
+    levels = (
+        int(item.value)
+        for item in correcting.items_of(settings.id_data)
+        if (item.kind, item.part) == (engine.LEVEL, part)
+    )
+    return next(levels, _level(settings))
+
+
+def _set_part_level(settings: "EigenpartsMeshSettings", level: int) -> None:
+    highest = max(0, _summary_value(settings, "n_levels") - 1)
+    _told(settings.id_data, set_branch_level, active_part(settings), min(level, highest))
+
+
+def _part_border(settings: "EigenpartsMeshSettings") -> float:
+    return offset_of(correcting.items_of(settings.id_data), active_part(settings))
+
+
+def _set_part_border(settings: "EigenpartsMeshSettings", offset: float) -> None:
+    _told(settings.id_data, move_border, active_part(settings), offset)
+
+
 class EigenpartsMeshSettings(bpy.types.PropertyGroup):
     """What a mesh shows now; the values live in its state, so they follow it through undo, copies and files."""
 
@@ -185,6 +224,28 @@ class EigenpartsMeshSettings(bpy.types.PropertyGroup):
     )
     rows: CollectionProperty(type=EigenpartsPartRow)
     active_row: IntProperty(name="Part", description="Selects the faces of the part", update=_select_row)
+    part_level: IntProperty(
+        name="Level of Part",
+        description="The level that counts inside the part that is active in the list",
+        min=0,
+        get=_part_level,
+        set=_set_part_level,
+    )
+    part_border: FloatProperty(
+        name="Border",
+        description="How far the border of the active part is moved, as a fraction of the field's range; the part grows"
+        " with it",
+        soft_min=-0.3,
+        soft_max=0.3,
+        min=-1,
+        max=1,
+        precision=3,
+        step=0.2,
+        get=_part_border,
+        set=_set_part_border,
+    )
+    correction_rows: CollectionProperty(type=EigenpartsCorrectionRow)
+    active_correction: IntProperty(name="Correction")
     vertex_attribute: _tick_box("VERTEX_ATTRIBUTE")
     corner_colors: _tick_box("CORNER_COLORS")
     face_sets: _tick_box("FACE_SETS")
@@ -242,7 +303,9 @@ _OWNERS = {
     bpy.types.Mesh: EigenpartsMeshSettings,
     bpy.types.WindowManager: EigenpartsJobStatus,
 }
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((EigenpartsPartRow, *_OWNERS.values()))
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (EigenpartsPartRow, EigenpartsCorrectionRow, *_OWNERS.values())
+)
 
 
 def register() -> None:

@@ -3,9 +3,10 @@
 import bpy
 import numpy as np
 
-from . import engine, outputs, part_table, registered, state
+from . import correcting, corrections, engine, outputs, part_table, registered, state
 from .division import Division
 from .exchange import OwnAttribute, read_own_integers, refuse_foreign, write_attribute
+from .refusals import Refusal
 
 PART = OwnAttribute("part", "INT", "FACE")
 
@@ -26,12 +27,51 @@ def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: flo
         If the mesh has no usable analysis or the level does not exist; nothing is changed then.
     """
     refuse_foreign_results(mesh)
-    analysis = state.load(mesh)
+    analysis = correcting.load(mesh)
     mode = mode or state.mode_of(mesh)
-    labels = engine.label_branches(analysis.hierarchy, analysis.branches, mode=mode, **choice)
+    labels = engine.label_branches(
+        analysis.hierarchy, analysis.branches, mode=mode, corrections=analysis.corrections, **choice
+    )
     registered.take_back(mesh)
     show_labels(mesh, labels, analysis.branches, mode)
     return labels
+
+
+def correct_mesh(
+    mesh: bpy.types.Mesh,
+    items: tuple["engine.Correction", ...],
+    *,
+    changed: int | None = None,
+    painted: np.ndarray | None = None,
+) -> None:
+    """Give an analyzed mesh other corrections, and show its parts at the level that it shows.
+
+    Parameters
+    ----------
+    items : tuple of Correction
+        All of them.
+    changed : int, optional
+        The place of one that has to have an effect.
+    painted : (F,) int64, optional
+        The part each face is painted with, -1 elsewhere; as before if None.
+
+    Raises
+    ------
+    Refusal, EngineError
+        If the mesh cannot be corrected, or the change has no effect; nothing is changed then.
+    """
+    refuse_foreign_results(mesh)
+    correcting.refuse_uncorrectable(mesh)
+    level, mode = state.summarize(mesh).level, state.mode_of(mesh)
+    painted = corrections.read_painted(mesh) if painted is None else painted
+    analysis = correcting.with_items(mesh, state.load(mesh), items, painted)
+    labels = engine.label_branches(
+        analysis.hierarchy, analysis.branches, level=level, mode=mode, corrections=analysis.corrections
+    )
+    if changed is not None and changed in labels.resting:
+        raise Refusal(correcting.NO_EFFECT)
+    correcting.store(mesh, analysis, painted)
+    show_labels(mesh, labels, analysis.branches, mode)
 
 
 def show_labels(
@@ -43,6 +83,7 @@ def show_labels(
     state.remember_segmentation(mesh, labels, mode)
     part_table.number_parts(mesh, labels.parts)
     _list_parts(mesh, labels.parts)
+    _list_corrections(mesh, labels.resting)
     outputs.write(mesh, _division(mesh, of_faces))
     mesh.update()
 
@@ -88,3 +129,15 @@ def _list_parts(mesh: bpy.types.Mesh, parts: "engine.Parts") -> None:
         row = rows.add()
         row.part, row.depth = int(parts.id[place]), depth
         row.share, row.n_faces = parts.area[place] / whole, int(parts.n_triangles[place])
+
+
+def _list_corrections(mesh: bpy.types.Mesh, resting: tuple[int, ...]) -> None:
+    """Fill the list of corrections that the panel shows."""
+    if not hasattr(mesh, "eigenparts"):
+        return
+    rows = mesh.eigenparts.correction_rows
+    rows.clear()
+    for place, item in enumerate(correcting.items_of(mesh)):
+        row = rows.add()
+        row.place, row.rests = place, place in resting
+        row.title = correcting.described(mesh, item)

@@ -32,7 +32,7 @@ class EIGENPARTS_OT_select_part(bpy.types.Operator):
         mesh = context.object.data
         with refusals_told(self):
             is_selected = read_own_integers(mesh, PART) == self.part
-            _select_faces(mesh, is_selected | _selected_faces(mesh) if self.extend else is_selected)
+            _select_faces(mesh, is_selected | selected_faces(mesh) if self.extend else is_selected)
             context.tool_settings.mesh_select_mode = (False, False, True)
             bpy.ops.object.mode_set(mode="EDIT")
             return {"FINISHED"}
@@ -52,7 +52,8 @@ def select_faces_of(mesh: bpy.types.Mesh, part: int) -> None:
         mesh.update()
 
 
-def _selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+def selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Tell which faces (F,) of a mesh that is not in edit mode are selected."""
     selection = np.empty(len(mesh.polygons), dtype=bool)
     mesh.polygons.foreach_get("select", selection)
     return selection

@@ -5,13 +5,13 @@ attribute.
 Nothing is trusted when it is read back: a file may come from anywhere.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
 import numpy as np
 
-from . import engine
+from . import corrections, engine
 from .exchange import (
     OwnAttribute,
     fingerprint,
@@ -21,10 +21,13 @@ from .exchange import (
     remove_own_attributes,
     write_attribute,
 )
+from .packing import packed, packed_array, unpacked, unpacked_array
 from .refusals import Refusal
+from .soundness import is_sound, lie_within
 
 STATE = "eigenparts_state"
-SCHEMA = 1
+# 2: with corrections by hand, which a state of version 1 has none of.
+SCHEMA = 2
 # One attribute for each merge tree; the second is there only where minima are features too.
 BRANCHES = (
     OwnAttribute("eigenparts_branch", "INT", "FACE"),
@@ -39,7 +42,7 @@ ARCS = (
 )
 HEIGHT = OwnAttribute(".eigenparts_height", "FLOAT", "POINT")
 EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vector")
-ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS)
+ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, *corrections.ATTRIBUTES)
 # What outlives a new analysis: choices of the user, and what is known of the parts as long as they are the same.
 CHOICES = ("mode", "outputs", "softness")
 REGISTRATION = "registration"  # only while the mesh shows the parts of another
@@ -52,9 +55,7 @@ CUT = "The borders of this mesh were cut already; analyze it again to cut it at 
 CHANGED = "The mesh was changed after it was analyzed; analyze it again."
 DAMAGED = "The analysis stored on this mesh is damaged; analyze it again."
 ABSENT = "Analyze the mesh first."
-
-_INT32 = np.iinfo(np.int32)
-_DTYPES = ("int64", "float64", "bool")
+LOST = "The parts that some corrections by hand belong to are not found any more; these corrections were removed."
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,10 +68,13 @@ class StoredAnalysis:
         Without the pairs that are noise.
     branches : tuple of Branches
         One for each tree.
+    corrections : Corrections, optional
+        What was changed by hand; it refers to these branches.
     """
 
     hierarchy: "engine.Hierarchy"
     branches: tuple["engine.Branches", ...]
+    corrections: "engine.Corrections | None" = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,10 +126,12 @@ def is_analyzed_for(operator: type[bpy.types.Operator], context: bpy.types.Conte
     return is_analyzed(context.object.data)
 
 
-def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, description: str) -> None:
-    """Put an analysis on the mesh it was made from, in place of an earlier one."""
+def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, description: str) -> tuple[str, ...]:
+    """Put an analysis on the mesh it was made from, in place of an earlier one, and return warnings for the user."""
     hierarchy = analysis.hierarchy
     kept = _kept(mesh, hierarchy)
+    items, warnings = _kept_corrections(mesh, analysis)
+    corrections.drop_pieces(mesh, {})
     n_trees = len(analysis.branches)
     remove_own_attributes(mesh, [own.name for own in BRANCHES[n_trees:] + ARCS[n_trees:]])
     _write_branches(mesh, analysis.branches)
@@ -134,28 +140,30 @@ def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, 
         "fingerprint": fingerprint(mesh),
         "description": description,
         **kept,
-        "hierarchy": _packed(hierarchy, _features(hierarchy)),
-        **{f"tree_{i}": _packed(tree) for i, tree in enumerate(hierarchy.trees)},
-        **{f"branches_{i}": _packed(branches) for i, branches in enumerate(analysis.branches)},
+        corrections.CORRECTIONS: corrections.packed_items(items),
+        "hierarchy": packed(hierarchy, _features(hierarchy)),
+        **{f"tree_{i}": packed(tree) for i, tree in enumerate(hierarchy.trees)},
+        **{f"branches_{i}": packed(branches) for i, branches in enumerate(analysis.branches)},
         **_store_source(mesh, source),
     }
+    return warnings
 
 
 def store_branches(mesh: bpy.types.Mesh, branches: tuple["engine.Branches", ...]) -> None:
     """Put new faces of the arcs on a mesh whose faces were cut; its borders can be cut no more."""
     _write_branches(mesh, branches)
     for i, pieces in enumerate(branches):
-        mesh[STATE][f"branches_{i}"] = _packed(pieces)
+        mesh[STATE][f"branches_{i}"] = packed(pieces)
     mesh[STATE]["fingerprint"] = fingerprint(mesh)
+    corrections.drop_pieces(mesh, mesh[STATE])
     remove_own_attributes(mesh, [own.name for own in (*ARCS, EDGE_HEIGHTS)])
 
 
 def load_source(mesh: bpy.types.Mesh) -> BorderSource:
     """Return what borders are cut from; raises a Refusal if it is not there."""
-    state = _current(mesh)
+    closing = closing_heights(mesh)
     try:
-        closing = tuple(_unpacked_array(state[f"closing_heights_{i}"]) for i in range(2 if "tree_1" in state else 1))
-        n_inside = min(2, max(0, int(state["n_inside_edge"])))
+        n_inside = min(2, max(0, int(_current(mesh)["n_inside_edge"])))
     except (KeyError, TypeError, ValueError) as error:
         raise Refusal(DAMAGED) from error
     if ARCS[0].name not in mesh.attributes:
@@ -164,7 +172,7 @@ def load_source(mesh: bpy.types.Mesh) -> BorderSource:
     inside = read_own_floats(mesh, EDGE_HEIGHTS, 2).reshape(-1, 2)[:, :n_inside].astype(np.float64)
     along = np.column_stack([heights[edges[:, 0]], inside, heights[edges[:, 1]]])
     arcs = tuple(read_own_integers(mesh, own) for own, _ in zip(ARCS, closing, strict=False))
-    if not all(_lie_within(arc, -1, len(heights)) for arc, heights in zip(arcs, closing, strict=True)):
+    if not all(lie_within(arc, -1, len(heights)) for arc, heights in zip(arcs, closing, strict=True)):
         raise Refusal(DAMAGED)
     along[(arcs[0][edges] < 0).any(axis=1)] = np.nan
     return BorderSource(engine.EdgeProfile(edges, along, arcs), heights, closing)
@@ -173,6 +181,26 @@ def load_source(mesh: bpy.types.Mesh) -> BorderSource:
 def vertex_heights(mesh: bpy.types.Mesh) -> np.ndarray:
     """Return the (V,) values of the field on the vertices."""
     return read_own_floats(mesh, HEIGHT).astype(np.float64)
+
+
+def closing_heights(mesh: bpy.types.Mesh) -> tuple[np.ndarray, ...]:
+    """Return for each tree the (A,) values of the field at which arcs close; raises a Refusal if they are not there."""
+    state = _current(mesh)
+    try:
+        heights = tuple(unpacked_array(state[f"closing_heights_{i}"]) for i in range(2 if "tree_1" in state else 1))
+        n_arcs = [len(unpacked_array(state[f"tree_{i}"]["parent"])) for i in range(len(heights))]
+    except (KeyError, TypeError, ValueError) as error:
+        raise Refusal(DAMAGED) from error
+    if [one.shape for one in heights] != [(n,) for n in n_arcs]:
+        raise Refusal(DAMAGED)
+    return heights
+
+
+def face_areas(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (F,) areas of the faces."""
+    areas = np.empty(len(mesh.polygons), dtype=np.float32)
+    mesh.polygons.foreach_get("area", areas)
+    return areas.astype(np.float64)
 
 
 def _write_branches(mesh: bpy.types.Mesh, branches: tuple["engine.Branches", ...]) -> None:
@@ -188,7 +216,7 @@ def _store_source(mesh: bpy.types.Mesh, source: BorderSource) -> dict[str, Any]:
     inside = np.nan_to_num(source.profile.heights[:, 1:-1])
     n_inside = inside.shape[1]
     write_attribute(mesh, EDGE_HEIGHTS, np.float32(np.pad(inside, ((0, 0), (0, 2 - n_inside)))))
-    closing = {f"closing_heights_{i}": _packed_array(heights) for i, heights in enumerate(source.closing_heights)}
+    closing = {f"closing_heights_{i}": packed_array(heights) for i, heights in enumerate(source.closing_heights)}
     return {"n_inside_edge": n_inside, **closing}
 
 
@@ -203,11 +231,15 @@ def load(mesh: bpy.types.Mesh) -> StoredAnalysis:
     state = _current(mesh)
     if state.get("fingerprint") != fingerprint(mesh):
         raise Refusal(CHANGED)
+    return _sound_analysis(mesh, state)
+
+
+def _sound_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
     try:
         analysis = _unpacked_analysis(mesh, state)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise Refusal(DAMAGED) from error
-    if not _is_sound(analysis):
+    if not is_sound(analysis.hierarchy, analysis.branches):
         raise Refusal(DAMAGED)
     return analysis
 
@@ -216,7 +248,7 @@ def remember_segmentation(mesh: bpy.types.Mesh, labels: "engine.BranchLabels", m
     """Store which level the mesh shows, in which mode, and what parts it has."""
     mesh[STATE]["level"] = labels.level
     mesh[STATE]["mode"] = mode
-    mesh[STATE]["parts"] = _packed(labels.parts)
+    mesh[STATE]["parts"] = packed(labels.parts)
 
 
 def mode_of(mesh: bpy.types.Mesh) -> str:
@@ -230,7 +262,7 @@ def summarize(mesh: bpy.types.Mesh) -> Summary:
     """Return what the panel shows of the state; raises a Refusal if it cannot be read."""
     state = _current(mesh)
     try:
-        parts = _unpacked(state["parts"])
+        parts = unpacked(state["parts"])
         share = parts["area"] / parts["area"].sum()
         rows = tuple(zip(parts["id"].tolist(), share.tolist(), parts["n_triangles"].tolist(), strict=True))
         return Summary(str(state["description"]), int(state["level"]), int(state["hierarchy"]["n_levels"]), rows)
@@ -255,11 +287,28 @@ def _kept(mesh: bpy.types.Mesh, hierarchy: "engine.Hierarchy") -> dict[str, Any]
     }
 
 
+def _kept_corrections(
+    mesh: bpy.types.Mesh, analysis: StoredAnalysis
+) -> tuple[tuple["engine.Correction", ...], tuple[str, ...]]:
+    """Return the corrections of an earlier state with the numbers that their parts have now, and warnings."""
+    items = corrections.read(mesh.get(STATE))
+    if not items or _has_trees(mesh[STATE], analysis.hierarchy):
+        return items, ()
+    try:
+        old = _sound_analysis(mesh, _current(mesh))
+    except Refusal:
+        return (), (LOST,)
+    areas = face_areas(mesh)
+    before, after = (engine.Divided(one.hierarchy, one.branches, areas) for one in (old, analysis))
+    kept = corrections.carry_over(mesh, items, before, after)
+    return kept, (LOST,) if len(kept) < len(items) else ()
+
+
 def _has_trees(state: Any, hierarchy: "engine.Hierarchy") -> bool:
     """Whether a state has the parts of a hierarchy, under the same numbers."""
     try:
         return all(
-            np.array_equal(_unpacked_array(state[f"tree_{i}"][column]), getattr(tree, column))
+            np.array_equal(unpacked_array(state[f"tree_{i}"][column]), getattr(tree, column))
             for i, tree in enumerate(hierarchy.trees)
             for column in ("part", "extremum")
         )
@@ -284,80 +333,12 @@ def _features(hierarchy: "engine.Hierarchy") -> slice:
     return slice(len(hierarchy.pairs) - (hierarchy.n_levels - 1), None)
 
 
-def _packed(record: Any, rows: slice = slice(None)) -> dict[str, Any]:
-    """Return numbers of a record, and arrays as lists with their shapes; what belongs to each face is an attribute."""
-    values = {field.name: getattr(record, field.name) for field in fields(record) if field.name != "of_face"}
-    arrays = {name: _packed_array(value[rows]) for name, value in values.items() if isinstance(value, np.ndarray)}
-    return arrays | {name: value for name, value in values.items() if isinstance(value, bool | int | float)}
-
-
-def _packed_array(array: np.ndarray) -> dict[str, Any]:
-    values = array
-    if array.dtype.kind in "iub":
-        # Custom properties hold 32 bits; beyond that there is only the "never" of a tree's root, and it stays so.
-        values = np.clip(array, _INT32.min, _INT32.max)
-    dtype = {"i": "int64", "u": "int64", "f": "float64", "b": "bool"}[array.dtype.kind]
-    packed = {"dtype": dtype, "shape": list(array.shape)}
-    return packed | ({"values": values.ravel().tolist()} if array.size else {})
-
-
-def _unpacked(group: Any) -> dict[str, Any]:
-    """Return the fields of a packed record."""
-    return {name: _unpacked_array(group[name]) if hasattr(group[name], "keys") else group[name] for name in group}
-
-
-def _unpacked_array(group: Any) -> np.ndarray:
-    if group["dtype"] not in _DTYPES:
-        raise ValueError(group["dtype"])
-    values = np.array(group.get("values", []), dtype=group["dtype"])
-    return values.reshape([int(size) for size in group["shape"]])
-
-
 def _unpacked_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
     n_trees = 2 if "tree_1" in state else 1
-    trees = tuple(engine.ArcTree(**_unpacked(state[f"tree_{i}"])) for i in range(n_trees))
-    hierarchy = engine.Hierarchy(**_unpacked(state["hierarchy"]), trees=trees)
+    trees = tuple(engine.ArcTree(**unpacked(state[f"tree_{i}"])) for i in range(n_trees))
+    hierarchy = engine.Hierarchy(**unpacked(state["hierarchy"]), trees=trees)
     branches = tuple(
-        engine.Branches(of_face=read_own_integers(mesh, BRANCHES[i]), **_unpacked(state[f"branches_{i}"]))
+        engine.Branches(of_face=read_own_integers(mesh, BRANCHES[i]), **unpacked(state[f"branches_{i}"]))
         for i in range(n_trees)
     )
     return StoredAnalysis(hierarchy, branches)
-
-
-def _is_sound(analysis: StoredAnalysis) -> bool:
-    """Whether all indices lead somewhere, so that nothing read from a file can do harm."""
-    hierarchy = analysis.hierarchy
-    n_features = hierarchy.n_levels - 1
-    if len({len(branches.arc) for branches in analysis.branches}) != 1:
-        return False
-    return len(hierarchy.pairs) == len(hierarchy.persistence) == len(hierarchy.is_maximum) == n_features and all(
-        _is_sound_tree(tree, n_features) and _are_sound_branches(branches, len(tree.parent))
-        for tree, branches in zip(hierarchy.trees, analysis.branches, strict=True)
-    )
-
-
-def _is_sound_tree(tree: "engine.ArcTree", n_features: int) -> bool:
-    n_arcs = len(tree.parent)
-    columns = (tree.part, tree.extremum, tree.saddle, tree.closing)
-    is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
-    return (
-        all(column.shape == (n_arcs,) for column in columns)
-        and bool(is_later.all())
-        and _lie_within(tree.parent, -1, n_arcs)
-        and _lie_within(tree.part, 1, 2 * n_features + n_arcs + 1)
-    )
-
-
-def _are_sound_branches(branches: "engine.Branches", n_arcs: int) -> bool:
-    n_branches = len(branches.arc)
-    return (
-        branches.area.shape == branches.n_faces.shape == branches.arc.shape == (n_branches,)
-        and branches.borders.shape == (len(branches.border_length), 2)
-        and _lie_within(branches.arc, 0, n_arcs)
-        and _lie_within(branches.borders, 0, n_branches)
-        and _lie_within(branches.of_face, 0, n_branches)
-    )
-
-
-def _lie_within(indices: np.ndarray, start: int, stop: int) -> bool:
-    return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)

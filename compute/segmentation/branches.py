@@ -82,6 +82,37 @@ def connected_branches(arcs: list[Ints], graph: FaceGraph) -> tuple[Branches, ..
     return tuple(Branches(of_face, arc[first], area, count, borders, length) for arc in arcs)
 
 
+def divided_branches(branches: tuple[Branches, ...], code: Ints, graph: FaceGraph) -> tuple[tuple[Branches, ...], Ints]:
+    """Divide branches further, so that all faces of one have the same code.
+
+    Parameters
+    ----------
+    branches : tuple of Branches
+    code : (F,) int64
+        From 0, for each face; faces that are not analyzed stay with what they lie on as far as their code is the same.
+    graph : FaceGraph
+
+    Returns
+    -------
+    branches : tuple of Branches
+    face : (B,) int64
+        A face of each branch.
+    """
+    of_face = branches[0].of_face
+    left, right = graph.neighbours.T
+    same = (of_face[left] == of_face[right]) & (code[left] == code[right])
+    piece = _pieces(graph, same)[graph.stands_for] * (1 + int(code.max(initial=0))) + code
+    _, face, piece = np.unique(piece, return_index=True, return_inverse=True)
+    piece = piece.reshape(-1)
+    apart = piece[left] != piece[right]
+    borders, length = _sum_pairs(piece[graph.neighbours[apart]], graph.length[apart], len(face))
+    area, count = sum_by(piece, graph.area), np.bincount(piece)
+    divided = tuple(
+        Branches(piece.astype(np.int32), old.arc[old.of_face[face]], area, count, borders, length) for old in branches
+    )
+    return divided, face
+
+
 def repaired_labels(labels: Ints, branches: Branches) -> Ints:
     """Make every part connected: its largest piece stays, the others join the neighbour they share most border with.
 

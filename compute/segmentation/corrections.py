@@ -22,7 +22,7 @@ SPLIT = "split"
 MOVE = "move"
 # Faces that were given to a part.
 PAINT = "paint"
-KINDS = (LEVEL, MERGE, SPLIT, MOVE, PAINT)
+CORRECTION_KINDS = (LEVEL, MERGE, SPLIT, MOVE, PAINT)
 
 # Where a branch lies in relation to a border along the field: out of its reach, in reach but not beyond it, beyond it.
 AWAY, BEFORE, BEYOND = 0, 1, 2
@@ -36,7 +36,7 @@ class Correction:
     Attributes
     ----------
     kind : str
-        One of ``KINDS``.
+        One of ``CORRECTION_KINDS``.
     part : int
         The part that is changed; for ``PAINT`` the one that gets the faces.
     other : int

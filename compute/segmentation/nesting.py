@@ -59,7 +59,12 @@ def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
 
 def first_own_part(tree: ArcTree) -> int:
     """Return the least number that no part of any level has."""
-    return 1 + tree.n_roots + 3 * tree.n_features
+    return number_behind(tree.n_roots, tree.n_features)
+
+
+def number_behind(n_roots: int, n_features: int) -> int:
+    """Return the number that follows those of leaves and of inner parts of two trees."""
+    return 1 + n_roots + 3 * n_features
 
 
 def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:

@@ -1,0 +1,44 @@
+"""What operators have in common that correct the parts of the active mesh by hand."""
+
+from typing import Any
+
+import bpy
+
+from . import correcting, engine, state
+from .refusals import Refusal, can_use_active_mesh, refusals_told
+
+BODY_IS_WHAT_IS_LEFT = "The body is what the parts leave; change the parts next to it instead."
+
+
+class CorrectsParts:
+    """Corrects the parts of the active mesh; operators give ``correct``."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            correcting.refuse_uncorrectable(context.object.data)
+            self.correct(context.object.data)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+    def correct(self, mesh: bpy.types.Mesh) -> None:
+        """Change the corrections of a mesh."""
+        raise NotImplementedError
+
+
+def refuse_absent(mesh: bpy.types.Mesh, *parts: int) -> None:
+    """Raise a Refusal if a mesh does not show some parts."""
+    shown = {part for part, _, _ in state.summarize(mesh).parts}
+    for part in parts:
+        if part not in shown:
+            raise Refusal(f"There is no part {part} at this level.")
+
+
+def new_item(mesh: bpy.types.Mesh, kind: str, part: int, **values: Any) -> "engine.Correction":
+    """Return a correction that is made on what a mesh shows now."""
+    return engine.Correction(kind, part, **values, level=state.summarize(mesh).level, mode=state.mode_of(mesh))

@@ -1,0 +1,147 @@
+"""What is stored of corrections by hand: plain numbers in the state, and the part of each painted face."""
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import bpy
+import numpy as np
+
+from . import engine
+from .exchange import OwnAttribute, own_names, read_own_integers, remove_own_attributes, write_attribute
+from .packing import packed, packed_array, unpacked, unpacked_array
+from .soundness import are_sound_branches, lie_within
+
+if TYPE_CHECKING:
+    from .engine import Branches, Correction, Corrections, Divided, Hierarchy
+
+# Groups of the state.
+CORRECTIONS, PIECES = "corrections", "pieces"
+# The part each face was painted with and one more, so that 0 is none.
+PAINTED = OwnAttribute("eigenparts_painted", "INT", "FACE")
+# The branches divided as corrections need them; the attribute is there only while some do.
+PIECE = OwnAttribute(".eigenparts_piece", "INT", "FACE")
+ATTRIBUTES = (PAINTED, PIECE)
+# More parts of one's own than anybody makes by hand.
+MOST_OWN_PARTS = 1000
+
+
+def read(state: Any) -> tuple["Correction", ...]:
+    """Return the corrections in a state, as far as they make sense; cheap enough for every redraw."""
+    group = state.get(CORRECTIONS) if hasattr(state, "keys") else None
+    if not hasattr(group, "keys"):
+        return ()
+    rows = [group[name] for name in sorted(filter(str.isdecimal, group.keys()), key=int)]
+    items = [_item(row) for row in rows if hasattr(row, "keys")]
+    n_numbers = first_own_part(state) + MOST_OWN_PARTS
+    return tuple(item for item in items if item is not None and _makes_sense(item, n_numbers))
+
+
+def first_own_part(state: Any) -> int:
+    """Return the least number that no part of any level has."""
+    try:
+        return engine.number_behind(int(state["tree_0"]["n_roots"]), int(state["tree_0"]["n_features"]))
+    except (KeyError, TypeError, ValueError):
+        return 0
+
+
+def packed_items(items: tuple["Correction", ...]) -> dict[str, dict[str, Any]]:
+    """Return corrections as a group of the state."""
+    names = ("kind", "part", "other", "value", "level", "mode")
+    return {str(row): {name: getattr(item, name) for name in names} for row, item in enumerate(items)}
+
+
+def read_painted(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (F,) int64 part each face was painted with, -1 elsewhere."""
+    if PAINTED.name not in own_names(mesh) or PAINTED.name not in mesh.attributes:
+        return np.full(len(mesh.polygons), -1)
+    return read_own_integers(mesh, PAINTED).astype(np.int64) - 1
+
+
+def write_painted(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
+    """Store the part of each painted face; nothing is left where none is."""
+    if (painted >= 0).any():
+        write_attribute(mesh, PAINTED, (painted + 1).astype(np.int32))
+    else:
+        remove_own_attributes(mesh, [PAINTED.name])
+
+
+def write_pieces(
+    mesh: bpy.types.Mesh, state: Any, branches: tuple["Branches", ...], corrections: "Corrections"
+) -> None:
+    """Store branches that were divided for corrections."""
+    write_attribute(mesh, PIECE, branches[0].of_face)
+    state[PIECES] = {
+        **{f"branches_{i}": packed(pieces) for i, pieces in enumerate(branches)},
+        "side": packed_array(corrections.side),
+        "painted": packed_array(corrections.painted),
+    }
+
+
+def drop_pieces(mesh: bpy.types.Mesh, state: Any) -> None:
+    """Forget divided branches: there is no need for them, or they are not true any more."""
+    remove_own_attributes(mesh, [PIECE.name])
+    if PIECES in state:
+        del state[PIECES]
+
+
+def read_pieces(
+    mesh: bpy.types.Mesh, state: Any, hierarchy: "Hierarchy", items: tuple["Correction", ...]
+) -> tuple[tuple["Branches", ...], "Corrections"] | None:
+    """Return the divided branches; None if they are not there or damaged, so that they have to be made again."""
+    group = state.get(PIECES)
+    if not hasattr(group, "keys") or PIECE.name not in own_names(mesh) or PIECE.name not in mesh.attributes:
+        return None
+    try:
+        of_face = read_own_integers(mesh, PIECE)
+        branches = tuple(
+            engine.Branches(of_face=of_face, **unpacked(group[f"branches_{i}"])) for i in range(len(hierarchy.trees))
+        )
+        side, painted = unpacked_array(group["side"]), unpacked_array(group["painted"])
+        n_branches = len(branches[0].arc)
+        is_sound = (
+            side.shape == (len(items), n_branches)
+            and painted.shape == (n_branches,)
+            and lie_within(painted, -1, first_own_part(state) + MOST_OWN_PARTS)
+            and all(
+                len(pieces.arc) == n_branches and are_sound_branches(pieces, len(tree.parent))
+                for pieces, tree in zip(branches, hierarchy.trees, strict=True)
+            )
+        )
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return None
+    return (branches, engine.Corrections(items, side, painted)) if is_sound else None
+
+
+def carry_over(
+    mesh: bpy.types.Mesh, items: tuple["Correction", ...], old: "Divided", new: "Divided"
+) -> tuple["Correction", ...]:
+    """Return corrections for another analysis of the mesh, and repaint its faces with the new numbers."""
+    found = engine.carried(items, old, new)
+    write_painted(mesh, engine.carried_painting(read_painted(mesh), items, found))
+    return engine.renumbered(items, found, old.hierarchy, new.hierarchy)
+
+
+def _item(row: Any) -> "Correction | None":
+    try:
+        return engine.Correction(
+            str(row["kind"]),
+            int(row["part"]),
+            int(row["other"]),
+            float(row["value"]),
+            int(row["level"]),
+            str(row["mode"]),
+        )
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return None
+
+
+def _makes_sense(item: "Correction", n_numbers: int) -> bool:
+    return (
+        item.kind in engine.CORRECTION_KINDS
+        and item.mode in engine.MODES
+        and math.isfinite(item.value)
+        and item.level >= 0
+        and 0 <= item.part < n_numbers
+        and 0 <= item.other < n_numbers
+        and (item.kind != engine.LEVEL or 0 <= item.value < 2**31)
+    )

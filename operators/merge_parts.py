@@ -1,0 +1,43 @@
+"""Operator: make one part of two that touch."""
+
+import bpy
+from bpy.props import IntProperty
+
+from . import correcting, engine, part_table, results
+from .correction_request import CorrectsParts, new_item, refuse_absent
+from .refusals import Refusal
+
+
+class EIGENPARTS_OT_merge_parts(CorrectsParts, bpy.types.Operator):
+    """Join a part to another one that it touches, at every level that has both"""
+
+    bl_idname = "eigenparts.merge_parts"
+    bl_label = "Merge Parts"
+
+    part: IntProperty(name="Part", description="Number of the part that goes")
+    into: IntProperty(name="Into", description="Number of the part that it joins; 0 is the body")
+
+    def correct(self, mesh: bpy.types.Mesh) -> None:
+        merge_parts(mesh, self.part, self.into)
+
+
+def merge_parts(mesh: bpy.types.Mesh, part: int, into: int) -> None:
+    """Join a part to another one."""
+    if part == into:
+        raise Refusal("A part cannot be merged with itself; choose another one.")
+    if part == 0:
+        # The body keeps its number, so it is the other one that goes.
+        part, into = into, part
+    refuse_absent(mesh, part, into)
+    items = correcting.items_of(mesh)
+    item = new_item(mesh, engine.MERGE, part, other=into)
+    try:
+        results.correct_mesh(mesh, (*items, item), changed=len(items))
+    except Refusal as refusal:
+        if str(refusal) != correcting.NO_EFFECT:
+            raise
+        names = [part_table.name_of(mesh, number) for number in (part, into)]
+        raise Refusal(f"{names[0]} and {names[1]} do not touch, so they cannot be one part.") from None
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_merge_parts,))

@@ -1,0 +1,75 @@
+"""Operator: give the selected faces to a part."""
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, IntProperty
+
+from . import correcting, corrections, engine, results, state
+from .correction_request import CorrectsParts, new_item, refuse_absent
+from .refusals import Refusal, can_use_active_mesh, refusals_told
+from .select_part import selected_faces
+
+
+class EIGENPARTS_OT_paint_part(CorrectsParts, bpy.types.Operator):
+    """Give the selected faces to a part, or make a part of them; edit mode is left, so that the result is seen"""
+
+    bl_idname = "eigenparts.paint_part"
+    bl_label = "Assign Selected Faces"
+
+    part: IntProperty(name="Part", description="Number of the part; 0 is the body", min=0)
+    new: BoolProperty(name="New Part", description="Make a new part of the faces", options={"SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        # Faces are selected in edit mode, so the action is offered there too.
+        is_edited = context.mode == "EDIT_MESH" and context.object.data.library is None
+        return (is_edited or can_use_active_mesh(cls, context)) and state.is_analyzed_for(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if context.mode == "EDIT_MESH":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        with refusals_told(self):
+            correcting.refuse_uncorrectable(context.object.data)
+            self.correct(context.object.data)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+    def correct(self, mesh: bpy.types.Mesh) -> None:
+        faces = selected_faces(mesh)
+        if self.new:
+            paint_new_part(mesh, faces)
+        else:
+            paint_part(mesh, self.part, faces)
+
+
+def paint_part(mesh: bpy.types.Mesh, part: int, faces: np.ndarray) -> None:
+    """Give some faces (F,) to a part that the mesh shows."""
+    refuse_absent(mesh, part)
+    items = correcting.items_of(mesh)
+    own = next((item.other for item in items if item.kind == engine.PAINT and item.part == part), 0)
+    _paint(mesh, items, new_item(mesh, engine.PAINT, part, other=own), faces)
+
+
+def paint_new_part(mesh: bpy.types.Mesh, faces: np.ndarray) -> None:
+    """Make a part of some faces (F,)."""
+    items = correcting.items_of(mesh)
+    part = correcting.free_part(state.load(mesh).hierarchy, items)
+    _paint(mesh, items, new_item(mesh, engine.PAINT, part, other=1), faces)
+
+
+def _paint(
+    mesh: bpy.types.Mesh, items: tuple["engine.Correction", ...], new: "engine.Correction", faces: np.ndarray
+) -> None:
+    if not faces.any():
+        raise Refusal("Select the faces first that the part is to have.")
+    painted = np.where(faces, new.part, corrections.read_painted(mesh))
+    is_known = any((item.kind, item.part) == (engine.PAINT, new.part) for item in items)
+    items = items if is_known else (*items, new)
+    # A part whose last painted face was painted over is painted no more.
+    left = set(painted.tolist())
+    results.correct_mesh(
+        mesh, tuple(item for item in items if item.kind != engine.PAINT or item.part in left), painted=painted
+    )
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_paint_part,))

@@ -1,0 +1,42 @@
+"""Operator: give the inside of one part a level of its own."""
+
+import bpy
+from bpy.props import BoolProperty, IntProperty
+
+from . import correcting, engine, results, state
+from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
+from .refusals import Refusal
+
+
+class EIGENPARTS_OT_set_branch_level(CorrectsParts, bpy.types.Operator):
+    """Divide one part more or less finely than the rest: inside it, another level counts"""
+
+    bl_idname = "eigenparts.set_branch_level"
+    bl_label = "Set Level of Part"
+
+    part: IntProperty(name="Part", description="Number of the part")
+    level: IntProperty(name="Level", description="Level that counts inside the part")
+    reset: BoolProperty(name="Reset", description="Let the level of the mesh count again", options={"SKIP_SAVE"})
+
+    def correct(self, mesh: bpy.types.Mesh) -> None:
+        set_branch_level(mesh, self.part, None if self.reset else self.level)
+
+
+def set_branch_level(mesh: bpy.types.Mesh, part: int, level: int | None) -> None:
+    """Give the inside of a part a level of its own, or take it away again if None."""
+    if part == 0:
+        raise Refusal(BODY_IS_WHAT_IS_LEFT)
+    n_levels = state.summarize(mesh).n_levels
+    if level is not None and not 0 <= level < n_levels:
+        raise Refusal(f"Level {level} does not exist; this shape has levels 0 to {n_levels - 1}.")
+    items = correcting.items_of(mesh)
+    others = tuple(item for item in items if (item.kind, item.part) != (engine.LEVEL, part))
+    if level is None:
+        results.correct_mesh(mesh, others)
+        return
+    refuse_absent(mesh, part)
+    item = new_item(mesh, engine.LEVEL, part, value=float(level))
+    results.correct_mesh(mesh, (*others, item), changed=len(others))
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_set_branch_level,))

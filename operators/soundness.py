@@ -1,0 +1,50 @@
+"""Whether all indices of a stored analysis lead somewhere, so that nothing read from a file can do harm."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .engine import ArcTree, Branches, Hierarchy
+
+
+def is_sound(hierarchy: "Hierarchy", branches: tuple["Branches", ...]) -> bool:
+    """Whether trees and branches fit each other."""
+    n_features = hierarchy.n_levels - 1
+    if len({len(pieces.arc) for pieces in branches}) != 1:
+        return False
+    return len(hierarchy.pairs) == len(hierarchy.persistence) == len(hierarchy.is_maximum) == n_features and all(
+        _is_sound_tree(tree, n_features) and are_sound_branches(pieces, len(tree.parent))
+        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
+    )
+
+
+def _is_sound_tree(tree: "ArcTree", n_features: int) -> bool:
+    n_arcs = len(tree.parent)
+    columns = (tree.part, tree.extremum, tree.saddle, tree.closing)
+    is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
+    return (
+        all(column.shape == (n_arcs,) for column in columns)
+        and tree.n_features == n_features
+        and 0 <= tree.n_roots <= 2 * n_arcs
+        and bool(is_later.all())
+        and lie_within(tree.parent, -1, n_arcs)
+        and lie_within(tree.part, 1, 2 * n_features + n_arcs + 1)
+    )
+
+
+def are_sound_branches(branches: "Branches", n_arcs: int) -> bool:
+    """Whether the tables of branches fit each other and a tree."""
+    n_branches = len(branches.arc)
+    return (
+        branches.area.shape == branches.n_faces.shape == branches.arc.shape == (n_branches,)
+        and branches.borders.shape == (len(branches.border_length), 2)
+        and lie_within(branches.arc, 0, n_arcs)
+        and lie_within(branches.borders, 0, n_branches)
+        and lie_within(branches.of_face, 0, n_branches)
+    )
+
+
+def lie_within(indices: np.ndarray, start: int, stop: int) -> bool:
+    """Whether all indices are at least ``start`` and below ``stop``."""
+    return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)

@@ -1,0 +1,51 @@
+"""Operator: make two parts of one, along the field."""
+
+from dataclasses import replace
+
+import bpy
+from bpy.props import FloatProperty, IntProperty
+
+from . import correcting, engine, results, state
+from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
+from .exchange import read_own_integers
+from .refusals import Refusal
+
+
+class EIGENPARTS_OT_split_part(CorrectsParts, bpy.types.Operator):
+    """Divide a part across, where no feature does: what lies beyond the new border becomes a part"""
+
+    bl_idname = "eigenparts.split_part"
+    bl_label = "Split Part"
+
+    part: IntProperty(name="Part", description="Number of the part")
+    position: FloatProperty(
+        name="Position",
+        description="Where the new border lies: 0 at the old one, 1 at the tip",
+        default=0.5,
+        min=0,
+        max=1,
+        subtype="FACTOR",
+    )
+
+    def correct(self, mesh: bpy.types.Mesh) -> None:
+        split_part(mesh, self.part, self.position)
+
+
+def split_part(mesh: bpy.types.Mesh, part: int, position: float) -> int:
+    """Divide a part across, and return the number of the new one."""
+    if part == 0:
+        raise Refusal(BODY_IS_WHAT_IS_LEFT)
+    refuse_absent(mesh, part)
+    if not 0 < position < 1:
+        raise Refusal("The position of the new border is between 0, the old border, and 1, the tip.")
+    items = correcting.items_of(mesh)
+    new = correcting.free_part(state.load(mesh).hierarchy, items)
+    item = new_item(mesh, engine.SPLIT, part, other=new)
+    start = next((made.value for made in items if made.kind == engine.SPLIT and made.other == part), 0.0)
+    peak = correcting.peak_within(mesh, item, read_own_integers(mesh, results.PART) == part)
+    item = replace(item, value=start + position * (peak - start))
+    results.correct_mesh(mesh, (*items, item), changed=len(items))
+    return new
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_split_part,))
