@@ -1,0 +1,264 @@
+"""The skeleton: the Reeb graph of the field, cleared of what is no limb and laid into the mesh."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from ..analysis import Analysis, reeb_graph
+from ..errors import LevelError
+from ..mesh import Bools, Floats, Ints
+from ..msc.reeb import ReebGraph
+from .branching import Chain, chains_between
+from .hubs import Hub, gathered_hubs, hub_number
+from .interior import Interior
+from .limbs import Ends, Limb, lay_limb
+from .ownership import bones_of_vertices
+from .slices import Slices, slice_arcs, triangle_centres
+
+ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level."
+# How far a tip reaches from the last slice towards the extremum, as long as it stays inside.
+REACHES = (0.85, 0.7, 0.5, 0.3)
+# The hub in the middle of a shape that has only two ends: no node of the graph.
+MIDDLE = -1
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """Joints joined to a tree by bones; J joints, each but the root with the bone that ends in it.
+
+    Attributes
+    ----------
+    joints : (J, 3) float64
+    parent : (J,) int64
+        The joint at which the bone begins, of smaller index; -1 for the root, which comes first.
+    part : (J,) int64
+        The part each bone lies in; that of the hub for the root.
+    radius : (J,) float64
+        Of the limb around each joint.
+    loops : (L, 2) int64
+        Pairs of joints at one place, where a handle was opened to make the graph a tree.
+    bone_of_vertex : (V,) int64
+        The bone, by the joint it ends in, that each vertex of the input belongs to.
+    warnings : tuple of str
+        Sentences for the user.
+    """
+
+    joints: Floats
+    parent: Ints
+    part: Ints
+    radius: Floats
+    loops: Ints
+    bone_of_vertex: Ints
+    warnings: tuple[str, ...] = ()
+
+
+def skeleton(
+    analysis: Analysis,
+    *,
+    level: int | None = None,
+    mode: str = "features",
+    labels: NDArray[np.int32] | None = None,
+    poses: Sequence[ArrayLike] = (),
+    n_pieces: int = 1,
+) -> Skeleton:
+    """Return joints and bones of a shape from the Reeb graph of its field.
+
+    Joints lie where limbs begin, at necks, and at the bends of the pose at hand and of further ones.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    level : int, optional
+        Which extrema are limbs; the default level if None.
+    mode : "features" or "nested"
+        Which of them are parts.
+    labels : (T,) int32, optional
+        Parts of the input's triangles in place of those of the level, such as those of a registered shape.
+    poses : sequence of (V, 3) float
+        The vertices in other poses.
+    n_pieces : int
+        Bones that a long straight limb is divided into, so that it can be bent.
+
+    Raises
+    ------
+    LevelError
+        If the level does not exist or has one part only.
+
+    References
+    ----------
+    .. [1] Reuter, IJCV 2010, section 5.3 and Fig. 19.
+    """
+    if labels is None:
+        labels = analysis.segment(level=level, mode=mode).labels
+    graph = reeb_graph(analysis, level=level)
+    if labels.min() == labels.max():
+        raise LevelError(ONE_PART)
+    slices = slice_arcs(analysis, graph, labels)
+    interior = Interior.of(analysis.surface)
+    all_poses = [analysis.mesh.vertices, *(np.asarray(pose, dtype=np.float64) for pose in poses)]
+    centres = np.stack([slices.means(triangle_centres(analysis, vertices)) for vertices in all_poses])
+    centres[0] = interior.centred(centres[0], slices.radius)
+    plan = _plan(analysis, graph, slices, centres, np.stack(all_poses), interior)
+    limbs = [
+        lay_limb(chain, ends, slices, centres, n_pieces) for chain, ends in zip(plan.chains, plan.ends, strict=True)
+    ]
+    return _assembled(analysis, plan, limbs, slices, interior, labels)
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """Chains with what they run between, from the root outward, and whether each closes a loop."""
+
+    hubs: list[Hub]
+    root: int
+    root_part: int
+    chains: list[Chain]
+    ends: list[Ends]
+    closes_loop: list[bool]
+
+
+def _plan(
+    analysis: Analysis, graph: ReebGraph, slices: Slices, centres: Floats, poses: Floats, interior: Interior
+) -> _Plan:
+    tips = _tips(analysis, graph, slices)
+    chains, hubs = _with_middle(chains_between(graph, slices, tips), tips, slices, centres)
+    root = _central(hubs, analysis.surface.mesh.vertices[np.unique(analysis.surface.mesh.triangles)])
+    parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
+    order, closes_loop = _from_root(chains, hubs, root)
+    nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
+    ends = []
+    for chain in order:
+        start, end = hub_number(hubs, chain.start), hub_number(hubs, chain.end)
+        if end >= 0:
+            place, part = hubs[end].places, parts[end]
+        else:
+            place, part = _reaching(centres[:, chain.slices[-1]], poses[:, nearest[chain.end]], interior), -1
+        ends.append(Ends(start, end, np.stack([hubs[start].places, place], axis=1), (parts[start], part)))
+    return _Plan(hubs, root, parts[root], order, ends, closes_loop)
+
+
+def _reaching(last: Floats, extremum: Floats, interior: Interior) -> Floats:
+    """Return the places (P, 3) of a tip in all poses: as far towards the extremum as it stays inside at rest."""
+    reach = next((reach for reach in REACHES if interior.holds(last[:1] + reach * (extremum - last)[:1])[0]), 0.0)
+    return last + reach * (extremum - last)
+
+
+def _tips(analysis: Analysis, graph: ReebGraph, slices: Slices) -> set[int]:
+    """Return the leaves of the graph that are tips of parts: of each part the most extreme one."""
+    is_upper = np.zeros(len(graph.vertex), dtype=bool)
+    is_upper[graph.arcs[:, 1]] = True
+    leaves = np.flatnonzero((graph.degree == 1) & (is_upper | analysis.field.minima_are_features))
+    arc_of = {node: arc for arc, ends in enumerate(graph.arcs.tolist()) for node in ends}
+    height = np.abs(analysis.field.values[graph.vertex] - np.median(analysis.field.values))
+    ranked = sorted(leaves.tolist(), key=lambda leaf: -height[leaf])
+    tips: dict[int, int] = {}
+    for leaf in ranked:
+        of_arc = slices.of_arc(arc_of[leaf])
+        part = int(slices.part[of_arc[-1] if is_upper[leaf] else of_arc[0]])
+        tips.setdefault(part, leaf)
+    return set(tips.values())
+
+
+def _with_middle(chains: list[Chain], tips: set[int], slices: Slices, centres: Floats) -> tuple[list[Chain], list[Hub]]:
+    """Return chains and hubs; a single chain from tip to tip is given a hub in its middle."""
+    hubs = gathered_hubs(chains, tips, slices, centres)
+    if not hubs:
+        (chain,) = chains
+        length = np.cumsum(slices.length[chain.slices])
+        half = int(np.clip(np.searchsorted(length, length[-1] / 2), 1, len(length) - 1))
+        middle = chain.slices[half]
+        hubs = [Hub(frozenset([MIDDLE]), centres[:, middle], float(slices.radius[middle]))]
+        chains = [Chain(MIDDLE, chain.start, chain.slices[:half][::-1]), Chain(MIDDLE, chain.end, chain.slices[half:])]
+    return [_outward(chain, tips) for chain in chains if not _is_inside(chain, hubs)], hubs
+
+
+def _outward(chain: Chain, tips: set[int]) -> Chain:
+    return chain.reversed() if chain.start in tips else chain
+
+
+def _is_inside(chain: Chain, hubs: list[Hub]) -> bool:
+    """Whether a chain was gathered into a hub; a loop of its own at a node was not."""
+    start, end = hub_number(hubs, chain.start), hub_number(hubs, chain.end)
+    return start == end >= 0 and chain.start != chain.end
+
+
+def _central(hubs: list[Hub], points: Floats) -> int:
+    distance = [np.linalg.norm(hub.places[0] - points.mean(axis=0)) for hub in hubs]
+    return int(np.argmin(distance))
+
+
+def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:
+    """Return the part that the widest of the level sets below a hub lies in."""
+    below = [int(slices.of_arc(arc)[-1]) for arc, (_, high) in enumerate(graph.arcs.tolist()) if high in hub.nodes]
+    if not below:
+        return 0
+    return int(slices.part[max(below, key=lambda row: slices.girth[row])])
+
+
+def _from_root(chains: list[Chain], hubs: list[Hub], root: int) -> tuple[list[Chain], list[bool]]:
+    """Return the chains in the order in which they are met from the root, each from its inner end."""
+    reached, waiting, left = {root}, [root], list(chains)
+    order: list[Chain] = []
+    closes_loop: list[bool] = []
+    while waiting:
+        hub = waiting.pop(0)
+        for chain in [chain for chain in left if hub in (hub_number(hubs, chain.start), hub_number(hubs, chain.end))]:
+            left.remove(chain)
+            order.append(chain if hub_number(hubs, chain.start) == hub else chain.reversed())
+            end = hub_number(hubs, order[-1].end)
+            closes_loop.append(end in reached)
+            if end >= 0 and end not in reached:
+                reached.add(end)
+                waiting.append(end)
+    return order, closes_loop
+
+
+def _assembled(
+    analysis: Analysis, plan: _Plan, limbs: list[Limb], slices: Slices, interior: Interior, labels: NDArray[np.int32]
+) -> Skeleton:
+    """Put limbs together to a tree."""
+    joint_of_hub = {plan.root: 0}
+    joints, parent = [plan.hubs[plan.root].places[:1]], [np.array([-1])]
+    part, radius = [np.array([plan.root_part])], [np.array([plan.hubs[plan.root].radius])]
+    loops, bone_of_slice, n_joints = [], np.full(slices.count, -1), 1
+    for limb, closes_loop in zip(limbs, plan.closes_loop, strict=True):
+        numbers = n_joints + np.arange(len(limb.joints))
+        joints.append(limb.joints)
+        parent.append(np.append(joint_of_hub[limb.start], numbers[:-1]))
+        part.append(limb.part)
+        radius.append(limb.radius)
+        bone_of_slice[limb.slices] = numbers[limb.bone_of_slice]
+        if closes_loop:
+            loops.append((int(numbers[-1]), joint_of_hub[limb.end]))
+        elif limb.end >= 0:
+            joint_of_hub[limb.end] = int(numbers[-1])
+        n_joints += len(numbers)
+    places = np.concatenate(joints)
+    tree, parts = np.concatenate(parent), np.concatenate(part)
+    radii = np.concatenate(radius)
+    places = np.where(_is_tip(tree)[:, None], places, interior.centred(places, radii))
+    bones = bones_of_vertices(analysis, slices, bone_of_slice, places, tree, parts)
+    pairs = np.array(loops, dtype=np.int64).reshape(-1, 2)
+    return Skeleton(places, tree, parts, radii, pairs, bones, _warnings(analysis, len(pairs)))
+
+
+def _is_tip(parent: Ints) -> Bools:
+    is_tip = np.ones(len(parent), dtype=bool)
+    is_tip[parent[1:]] = False
+    return is_tip
+
+
+def _warnings(analysis: Analysis, n_loops: int) -> tuple[str, ...]:
+    warnings = []
+    if analysis.surface.n_components > 1:
+        warnings.append(
+            f"The mesh has {analysis.surface.n_components} loose parts; the bones lie in the largest, the others follow"
+            " what is next to them."
+        )
+    if n_loops:
+        handles = "a handle" if n_loops == 1 else f"{n_loops} handles"
+        warnings.append(f"The shape has {handles}; bones are a tree, so they are open at one end there.")
+    return tuple(warnings)

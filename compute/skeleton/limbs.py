@@ -1,0 +1,137 @@
+"""Limbs: chains of slices laid into space, with joints where they begin, bend and end."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..mesh import Floats, Ints
+from .bends import Curve, joints_along, resampled
+from .branching import Chain
+from .slices import Slices
+
+# A limb whose first ring lies nearer to the hub than this many of its radii begins in the hub itself.
+ROOTED = 0.5
+# A limb turns about a point this many of its radii deeper than where it comes free of the body, as shoulders, hips and
+# knuckles do.
+DEPTH = 0.75
+
+
+@dataclass(frozen=True, eq=False)
+class Limb:
+    """A row of n bones from a hub to a tip or to another hub.
+
+    Attributes
+    ----------
+    start, end : int
+        Hubs; the end is -1 for a tip.
+    joints : (n, 3) float64
+        Where the bones end, the first hub left out.
+    radius, part : (n,)
+        Of each bone's end, and the part each bone lies in.
+    slices : (s,) int64
+        Of the chain, in their order.
+    bone_of_slice : (s,) int64
+        The bone that each slice lies around.
+    """
+
+    start: int
+    end: int
+    joints: Floats
+    radius: Floats
+    part: Ints
+    slices: Ints
+    bone_of_slice: Ints
+
+
+@dataclass(frozen=True, eq=False)
+class Ends:
+    """What a chain runs between.
+
+    Attributes
+    ----------
+    start, end : int
+        Numbers of hubs; the end is -1 for a tip.
+    places : (P, 2, 3) float64
+        In each pose.
+    parts : (2,) tuple of int
+        Of the hubs; -1 for a tip.
+    """
+
+    start: int
+    end: int
+    places: Floats
+    parts: tuple[int, int]
+
+
+def lay_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_pieces: int) -> Limb:
+    """Return the bones along a chain.
+
+    Parameters
+    ----------
+    chain : Chain
+    ends : Ends
+    slices : Slices
+    centres : (P, S, 3) float64
+        Of the slices in each pose.
+    n_pieces : int
+        Bones that a long straight stretch is divided into.
+    """
+    radius = slices.radius[chain.slices]
+    places = np.concatenate([ends.places[:, :1], centres[:, chain.slices], ends.places[:, 1:]], axis=1)
+    curve, length = resampled(places, np.concatenate([radius[:1], radius, radius[-1:]]))
+    fixed = np.searchsorted(curve.along, length[_borders(chain, ends, slices, places, radius)])
+    last = len(curve.along) - 1
+    joints = joints_along(curve, np.unique(np.clip(np.concatenate([[0], fixed, [last]]), 0, last)), n_pieces)
+    point = np.minimum(np.searchsorted(curve.along, length[1:-1]), last)
+    bone = np.searchsorted(joints[1:-1], point, side="right")
+    part = _main_parts(bone, slices.part[chain.slices], slices.length[chain.slices], len(joints) - 1, ends)
+    places = curve.places[0, joints].copy()
+    for first in np.flatnonzero(part[1:] != part[:-1]) + 1:
+        places[first] = _deeper(curve, joints[first], joints[first + 1], ends, int(part[first - 1]))
+    return Limb(
+        ends.start,
+        ends.end,
+        places[1:],
+        curve.radius[joints[1:]],
+        part,
+        chain.slices,
+        bone,
+    )
+
+
+def _deeper(curve: Curve, joint: int, following: int, ends: Ends, before: int) -> Floats:
+    """Return where a limb turns that comes free at a joint: deeper along its own axis, where it grows out of a hub."""
+    place = curve.places[0, joint]
+    if before != ends.parts[0]:
+        return place
+    # Its own axis shows a little further out, where nothing of the body is left.
+    beyond = np.searchsorted(curve.along, curve.along[joint] + 2 * curve.radius[joint])
+    axis = curve.places[0, min(int(beyond), following)] - place
+    return place - DEPTH * curve.radius[joint] * axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
+
+
+def _borders(chain: Chain, ends: Ends, slices: Slices, places: Floats, radius: Floats) -> Ints:
+    """Return the points, counted from the start of the chain, at which it passes into another part."""
+    part = slices.part[chain.slices]
+    changes = np.flatnonzero(np.diff(part)) + 2
+    found = [int(change) for change in changes]
+    is_limb = ends.end < 0 or part[0] != ends.parts[0]
+    if is_limb and np.linalg.norm(places[0, 1] - places[0, 0]) > ROOTED * radius[0]:
+        found.append(1)
+    if ends.end >= 0 and part[-1] != ends.parts[1] and _gap(places[0, -1], places[0, -2]) > ROOTED * radius[-1]:
+        found.append(len(part))
+    return np.array(sorted(found), dtype=np.int64)
+
+
+def _gap(first: Floats, second: Floats) -> float:
+    return float(np.linalg.norm(second - first))
+
+
+def _main_parts(bone: Ints, part: Ints, length: Floats, n_bones: int, ends: Ends) -> Ints:
+    """Return the part that most of each bone's slices are in; bones without slices lie in the hub next to them."""
+    n_parts = int(part.max()) + 1
+    shares = np.bincount(bone * n_parts + part, length, n_bones * n_parts).reshape(n_bones, n_parts)
+    main = shares.argmax(axis=1)
+    empty = np.flatnonzero(shares.sum(axis=1) == 0)
+    main[empty] = np.where(empty < np.min(bone), ends.parts[0], ends.parts[1])
+    return main
