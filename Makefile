@@ -5,7 +5,7 @@ RUN = $(ENVIRONMENT)/bin/python
 MESH ?=
 OUTPUT ?= demo
 
-.PHONY: help environment demo test lint package test-matrix clean
+.PHONY: help environment demo test lint package test-matrix test-window clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1  /p' $(MAKEFILE_LIST)
@@ -29,6 +29,9 @@ package: environment  ## one installable zip for each platform in dist/
 
 test-matrix: package  ## tests and zip on every supported Blender, or VERSIONS="4.2.23 5.2.3"
 	@$(RUN) tools/test_matrix.py $(VERSIONS)
+
+test-window: environment  ## the zip in the real Blender application, on a screen of its own; pictures in demo/window
+	@$(RUN) tools/test_window.py
 
 clean:  ## everything the other targets made
 	rm -rf $(ENVIRONMENT) .environments .*_cache dist demo wheels

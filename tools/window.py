@@ -70,6 +70,7 @@ class Window:
         address = str(self._listener.address[1])
         command = [find_application(), "--enable-event-simulate", "--python", inside, "--", address, key.hex()]
         self.log = folder / "log.txt"
+        self._mouse = (0, 0)
         with self.log.open("w") as log:
             self._process = subprocess.Popen(
                 command, env={**os.environ, "DISPLAY": self._screen.name, **own}, stdout=log, stderr=log
@@ -89,19 +90,20 @@ class Window:
         return self._ask("value", source)
 
     def press(self, key: str, **modifiers: bool) -> None:
-        """Press and release a key, named as Blender names it, over the 3D view."""
+        """Press and release a key, named as Blender names it, where the mouse is."""
         for value in ("PRESS", "RELEASE"):
             self._simulate(key, value, **modifiers)
 
     def point(self, x: int, y: int) -> None:
         """Move the mouse to pixels of the window, counted from below."""
-        self._simulate("MOUSEMOVE", "NOTHING", x=x, y=y)
+        self._mouse = (x, y)
+        self._simulate("MOUSEMOVE", "NOTHING")
 
     def click(self, x: int, y: int) -> None:
         """Click with the left button."""
         self.point(x, y)
         for value in ("PRESS", "RELEASE"):
-            self._simulate("LEFTMOUSE", value, x=x, y=y)
+            self._simulate("LEFTMOUSE", value)
 
     def write(self, text: str) -> None:
         """Type letters, digits and spaces."""
@@ -158,7 +160,8 @@ class Window:
         return answer
 
     def _simulate(self, key: str, value: str, **details: Any) -> None:
-        told = "".join(f", {name}={detail!r}" for name, detail in details.items())
+        x, y = self._mouse
+        told = "".join(f", {name}={detail!r}" for name, detail in {"x": x, "y": y, **details}.items())
         self.run(f"bpy.context.window_manager.windows[0].event_simulate({key!r}, {value!r}{told})")
 
 

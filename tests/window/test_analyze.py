@@ -1,0 +1,140 @@
+"""Analyze in the window: the panel, progress, ESC, and what happens to the mesh meanwhile."""
+
+import numpy as np
+import pytest
+
+from tests.window.conftest import MODULE, add_character, analyze, choose
+
+STATUS = "bpy.context.window_manager.eigenparts"
+# Seconds; a user who presses ESC wants the window back by then.
+AT_ONCE = 0.5
+
+
+@pytest.fixture
+def running(window, humanoid):
+    """An analysis under way."""
+    add_character(window, humanoid)
+    choose(window, "analyze")
+    window.wait_for(f"{STATUS}.is_running")
+    return window
+
+
+def names_on_mesh(window):
+    return window.value("sorted(a.name for a in bpy.data.meshes[0].attributes), sorted(bpy.data.meshes[0].keys())")
+
+
+def test_the_tab_shows_all_panels_without_a_mesh_too(window, take, hand):
+    take("tab_without_mesh")
+    add_character(window, hand)
+    take("tab_with_mesh")
+
+
+def test_analyze_is_found_by_its_name_and_shows_parts(window, hand, take):
+    add_character(window, hand)
+    before = window.pixels()
+    analyze(window)
+    take("hand_analyzed")
+    assert window.value("len(bpy.context.object.data.eigenparts.rows)") == 6
+    assert window.value(
+        "[a.spaces[0].shading.color_type for a in bpy.context.screen.areas if a.type == 'VIEW_3D']"
+    ) == ["VERTEX"]
+    assert is_coloured(window.pixels()).mean() > is_coloured(before).mean() + 0.02
+
+
+def is_coloured(pixels):
+    """Which pixels are far from grey."""
+    return np.ptp(pixels.astype(int), axis=2) > 60
+
+
+def test_progress_rises_and_says_what_is_done(running, take):
+    running.run("seen = []")
+    running.run(
+        f"def look():\n"
+        f"    status = {STATUS}\n"
+        f"    seen.append((status.fraction, status.text))\n"
+        f"    return 0.05 if status.is_running else None\n"
+        f"bpy.app.timers.register(look)"
+    )
+    running.wait_for(f"{STATUS}.fraction > 0.4")
+    take("progress")
+    running.wait_for(f"not {STATUS}.is_running")
+    fractions, texts = zip(*running.value("seen"), strict=True)
+    assert list(fractions) == sorted(fractions)
+    assert len(set(texts)) >= 4
+
+
+def test_escape_gives_the_window_back_and_changes_nothing(running, take):
+    before = names_on_mesh(running)
+    running.press("ESC")
+    assert running.wait_for(f"not {STATUS}.is_running") < AT_ONCE
+    running.settle()
+    take("cancelled")
+    assert names_on_mesh(running) == before
+
+
+def test_the_cancel_button_does_as_escape(running):
+    before = names_on_mesh(running)
+    running.run("with over_view(): bpy.ops.eigenparts.cancel()")
+    assert running.wait_for(f"not {STATUS}.is_running") < AT_ONCE
+    assert names_on_mesh(running) == before
+
+
+def test_after_a_cancelled_job_the_next_one_comes_to_its_end(running):
+    running.press("ESC")
+    running.wait_for(f"not {STATUS}.is_running")
+    analyze(running)
+    assert running.value("len(bpy.context.object.data.eigenparts.rows)") > 5
+
+
+def test_the_window_can_be_used_meanwhile(running):
+    running.run("bpy.context.scene.cursor.location = (1, 2, 3)")
+    running.press("N")
+    running.settle()
+    assert running.value(f"{STATUS}.is_running")
+    running.wait_for("'eigenparts_state' in bpy.data.meshes[0]")
+
+
+def test_a_mesh_that_is_renamed_meanwhile_is_found(running):
+    running.run("bpy.context.object.name = bpy.context.object.data.name = 'Renamed'")
+    running.wait_for("'eigenparts_state' in bpy.data.meshes['Renamed']")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "bpy.data.meshes.remove(bpy.context.object.data)",
+        "bpy.context.object.data.vertices[0].co.x += 0.01",
+        "with over_view(): bpy.ops.object.mode_set(mode='EDIT')",
+        "with over_view(): bpy.ops.ed.undo()",
+        "bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)",
+    ],
+    ids=["deleted", "edited", "edit mode", "undone", "another file"],
+)
+def test_a_mesh_that_is_gone_or_changed_meanwhile_is_left_alone(running, change):
+    running.run(change)
+    running.wait_for(f"not {STATUS}.is_running")
+    running.settle()
+    assert running.value("[mesh.name for mesh in bpy.data.meshes if 'eigenparts_state' in mesh]") == []
+
+
+def test_an_error_that_nobody_foresaw_is_told_and_can_be_reported(window, hand, take):
+    add_character(window, hand)
+    before = names_on_mesh(window)
+    window.run(
+        "import sys\n"
+        f"module = sys.modules['{MODULE}.operators.analyze']\n"
+        "analyze_arrays = module.analyze_arrays\n"
+        "def broken(*arguments): raise MemoryError('/home/somebody/file')\n"
+        "module.analyze_arrays = broken"
+    )
+    choose(window, "analyze")
+    window.wait_for(f"sys.modules['{MODULE}.operators.faults'].last()")
+    window.settle()
+    take("unexpected_error")
+    window.run("module.analyze_arrays = analyze_arrays")
+    assert names_on_mesh(window) == before
+    choose(window, "copy bug report")
+    window.wait_for("'MemoryError' in bpy.context.window_manager.clipboard")
+    assert "somebody" not in window.value("bpy.context.window_manager.clipboard")
+    analyze(window)
+    assert window.value(f"sys.modules['{MODULE}.operators.faults'].last()") is None
