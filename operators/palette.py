@@ -46,6 +46,8 @@ COMPLEX_COLOURS = {
     "falling": _linear("66ccee"),
     "level": _linear("ffffff"),
 }
+# Linear RGB of the borders between parts: dark, which no part is.
+BORDER_COLOUR = _linear("141414")
 # The property that says which of these an object of a traced complex is.
 COMPLEX_ROLE = "eigenparts_role"
 

@@ -14,7 +14,7 @@ MAY_IMPORT = {
     "compute": set(),
     "operators": {"compute"},
     "cli": {"compute", "operators"},
-    "ui": {"operators.state", "operators.palette", "operators.registered", "operators.faults"},
+    "ui": {"operators.state", "operators.palette", "operators.registered", "operators.faults", "operators.border_lines"},
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},

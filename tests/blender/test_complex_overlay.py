@@ -2,6 +2,7 @@
 
 import importlib
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -45,9 +46,49 @@ def test_dots_are_round_and_face_the_view(overlay):
     np.testing.assert_allclose(depth, depth[0], atol=1e-5)
 
 
-def test_switching_off_takes_the_handler_away(overlay):
-    switch = bpy.context.window_manager
-    switch.eigenparts_complex_through = True
-    assert overlay._handler is not None
-    switch.eigenparts_complex_through = False
-    assert overlay._handler is None
+@pytest.mark.parametrize("switch", ["critical_points", "separatrices", "level_sets"])
+def test_a_switch_hides_what_it_names_and_nothing_else(overlay, star_object, switch):
+    bpy.ops.eigenparts.trace_complex()
+    bpy.context.view_layer.update()
+    assert getattr(bpy.context.window_manager, f"eigenparts_{switch}")
+    setattr(bpy.context.window_manager, f"eigenparts_{switch}", False)
+    shown = {obj["eigenparts_role"] for obj in overlay.traced_objects(bpy.context)}
+    assert shown == set(overlay.COMPLEX_COLOURS) - set(overlay.SHOWN[switch][2])
+    setattr(bpy.context.window_manager, f"eigenparts_{switch}", True)
+    assert {obj["eigenparts_role"] for obj in overlay.traced_objects(bpy.context)} == set(overlay.COMPLEX_COLOURS)
+
+
+def test_switches_are_off_where_nothing_is_traced(overlay, star_object):
+    assert not any(getattr(bpy.context.window_manager, f"eigenparts_{switch}") for switch in overlay.SHOWN)
+
+
+def lines_of(obj):
+    from eigenparts.operators.border_lines import border_lines
+
+    return border_lines(obj, bpy.context.evaluated_depsgraph_get())
+
+
+def test_borders_are_the_edges_between_faces_of_two_parts(analyzed):
+    edited = bmesh.new()
+    edited.from_mesh(analyzed.data)
+    part = edited.faces.layers.int["part"]
+    between = [edge for edge in edited.edges if len({face[part] for face in edge.link_faces}) > 1]
+    expected = {tuple(sorted(tuple(vertex.co) for vertex in edge.verts)) for edge in between}
+    ends = lines_of(analyzed).reshape(-1, 2, 3).tolist()
+    assert {tuple(sorted(map(tuple, line))) for line in ends} == expected
+    edited.free()
+
+
+def test_borders_follow_the_level_and_the_modifiers(analyzed):
+    at_default = lines_of(analyzed)
+    bpy.ops.eigenparts.segment(level=1)
+    assert 0 < len(lines_of(analyzed)) < len(at_default)
+    analyzed.modifiers.new("Subdivision", "SUBSURF").levels = 1
+    bpy.ops.eigenparts.segment()
+    bpy.context.view_layer.update()
+    assert len(lines_of(analyzed)) == 2 * len(at_default)
+
+
+def test_one_part_has_no_borders(analyzed):
+    bpy.ops.eigenparts.segment(level=0)
+    assert len(lines_of(analyzed)) == 0
