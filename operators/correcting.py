@@ -66,6 +66,22 @@ def items_of(mesh: bpy.types.Mesh) -> tuple["engine.Correction", ...]:
     return corrections.read(mesh.get(state.STATE))
 
 
+def crossings(mesh: bpy.types.Mesh, source: state.BorderSource) -> tuple["engine.EdgeProfile", "engine.Crossings"]:
+    """Return where the borders of the parts that a mesh shows cross its edges, and the arcs these refer to."""
+    base, analysis = state.load(mesh), load(mesh)
+    level, mode = state.summarize(mesh).level, state.mode_of(mesh)
+    corrected = analysis.corrections or engine.Corrections()
+    labels = engine.label_branches(analysis.hierarchy, analysis.branches, level=level, mode=mode, corrections=corrected)
+    whole = divided(mesh, base)
+    drawn = ()
+    if engine.needs_faces(corrected.items):
+        _, relief = _faces_of(mesh)
+        drawn = engine.drawn_borders(whole, source.closing_heights, corrected, labels.resting, relief)
+    cuts = engine.cut_arcs(base.hierarchy, base.branches, level, mode, corrected.branch_levels)
+    joined = engine.joined_parts(corrected, labels.resting)
+    return engine.corrected_crossings(source.profile, whole, source.closing_heights, cuts, drawn, joined)
+
+
 def described(mesh: bpy.types.Mesh, item: "engine.Correction") -> str:
     """Return what a correction does, in words."""
     part, other = (part_table.name_of(mesh, number) for number in (item.part, item.other))

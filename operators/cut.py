@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from . import engine, registered, results, state
+from . import correcting, corrections, engine, paint_part, registered, results, state
 from .exchange import read_mesh, read_own_integers
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
@@ -57,10 +57,9 @@ def insert_borders(obj: bpy.types.Object) -> None:
     results.refuse_foreign_results(mesh)
     analysis, source = state.load(mesh), state.load_source(mesh)
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
-    cuts = engine.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
-    crossings = engine.cross_edges(source.profile, analysis.hierarchy.trees, source.closing_heights, cuts)
+    profile, crossings = correcting.crossings(mesh, source)
     arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
-    faces = cut_mesh(mesh, crossings, np.stack(source.profile.arcs, axis=1).astype(np.int64))
+    faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
     for number, arc in enumerate(arcs):
         arcs[number] = np.concatenate([arc, arc[faces.origin]])
         arcs[number][faces.face] = faces.arcs[:, number]
@@ -72,9 +71,13 @@ def move_borders(mesh: bpy.types.Mesh) -> None:
     results.refuse_foreign_results(mesh)
     analysis = state.load(mesh)
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
-    cuts = engine.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
     labels = read_own_integers(mesh, results.PART)
     moved = engine.shortened_borders(labels, _face_graph(mesh))
+    if correcting.items_of(mesh):
+        # Faces that were given to a part by hand do not follow arcs, so these are given to theirs in the same way.
+        paint_part.repaint(mesh, np.where(moved != labels, moved, corrections.read_painted(mesh)))
+        return
+    cuts = engine.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
     arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
     for arc, cut in zip(arcs, cuts, strict=True):
         # The last arc of a tree is a root, which is body at every level.

@@ -64,12 +64,22 @@ def _paint(
         raise Refusal("Select the faces first that the part is to have.")
     painted = np.where(faces, new.part, corrections.read_painted(mesh))
     is_known = any((item.kind, item.part) == (engine.PAINT, new.part) for item in items)
-    items = items if is_known else (*items, new)
+    _repaint(mesh, items if is_known else (*items, new), painted)
+
+
+def repaint(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
+    """Paint the faces (F,) of a mesh with parts that it shows, -1 for none."""
+    items = correcting.items_of(mesh)
+    known = {item.part for item in items if item.kind == engine.PAINT}
+    new = [new_item(mesh, engine.PAINT, part) for part in np.unique(painted).tolist() if part >= 0]
+    _repaint(mesh, (*items, *(item for item in new if item.part not in known)), painted)
+
+
+def _repaint(mesh: bpy.types.Mesh, items: tuple["engine.Correction", ...], painted: np.ndarray) -> None:
     # A part whose last painted face was painted over is painted no more.
     left = set(painted.tolist())
-    results.correct_mesh(
-        mesh, tuple(item for item in items if item.kind != engine.PAINT or item.part in left), painted=painted
-    )
+    kept = tuple(item for item in items if item.kind != engine.PAINT or item.part in left)
+    results.correct_mesh(mesh, kept, painted=painted)
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_paint_part,))

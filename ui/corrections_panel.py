@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators import state
+from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
 
 
 class EIGENPARTS_UL_corrections(bpy.types.UIList):
@@ -12,7 +12,7 @@ class EIGENPARTS_UL_corrections(bpy.types.UIList):
         row = layout.row(align=True)
         name = row.row()
         name.active = not item.rests
-        name.label(text=item.title, icon="PAUSE" if item.rests else "CHECKMARK")
+        name.label(text=item.title, translate=False, icon="PAUSE" if item.rests else "CHECKMARK")
         remove = row.operator("eigenparts.remove_correction", text="", icon="X", emboss=False)
         remove.index = item.place
 
@@ -27,25 +27,21 @@ class EIGENPARTS_MT_merge(bpy.types.Menu):
         active = _active_row(settings)
         for row in settings.rows:
             if active is not None and row.part != active.part:
-                merge = self.layout.operator("eigenparts.merge_parts", text=row.title)
+                merge = self.layout.operator("eigenparts.merge_parts", text=row.title, translate=False)
                 merge.part, merge.into = active.part, row.part
 
 
-class EIGENPARTS_PT_corrections(bpy.types.Panel):
+class EIGENPARTS_PT_corrections(EigenpartsPanel, bpy.types.Panel):
     bl_label = "Correct by Hand"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Eigenparts"
-    bl_parent_id = "EIGENPARTS_PT_parts"
+    bl_order = 25
     bl_options = {"DEFAULT_CLOSED"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        obj = context.object
-        return obj is not None and obj.type == "MESH" and state.is_analyzed(obj.data)
-
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.object.data.eigenparts
+        mesh = analyzed_mesh(context)
+        if mesh is None:
+            draw_missing_analysis(self.layout, context)
+            return
+        settings = mesh.eigenparts
         row = _active_row(settings)
         if row is None:
             self.layout.label(text="Click a part in the list", icon="INFO")
@@ -64,7 +60,7 @@ def _active_row(settings: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | 
 
 def _draw_part(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, row: bpy.types.PropertyGroup) -> None:
     """Offer what can be done with a part; the body has no border of its own."""
-    layout.label(text=row.title)
+    layout.label(text=row.title, translate=False)
     along_field = layout.column(align=True)
     along_field.enabled = row.part != 0
     along_field.prop(settings, "part_level")

@@ -102,6 +102,15 @@ class ArcTree:
         return part
 
 
+def two_arcs(is_of_maxima: bool) -> ArcTree:
+    """Return a tree of two arcs: what a single border cuts off, and the rest."""
+    none = np.zeros(2)
+    return ArcTree(
+        is_of_maxima, 1, 0, np.array([1, -1]), np.ones(2, dtype=np.int64), np.zeros(2, dtype=np.int64),
+        np.array([0, -1]), np.array([-1, NEVER]), none, none, none, none,
+    )  # fmt: skip
+
+
 @dataclass(frozen=True, eq=False)
 class ArcPlaces:
     """Where the vertices of the net lie on an arc tree.
