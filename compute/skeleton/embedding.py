@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from ..analysis import Analysis, reeb_graph
-from ..errors import LevelError
+from ..errors import LevelError, MeshError
 from ..mesh import Bools, Floats, Ints
 from ..msc.reeb import ReebGraph
 from .branching import Chain, chains_between
@@ -86,6 +86,8 @@ def skeleton(
     ------
     LevelError
         If the level does not exist or has one part only.
+    MeshError
+        If a pose does not have the vertices of the mesh.
 
     References
     ----------
@@ -98,14 +100,24 @@ def skeleton(
         raise LevelError(ONE_PART)
     slices = slice_arcs(analysis, graph, labels)
     interior = Interior.of(analysis.surface)
-    all_poses = [analysis.mesh.vertices, *(np.asarray(pose, dtype=np.float64) for pose in poses)]
-    centres = np.stack([slices.means(triangle_centres(analysis, vertices)) for vertices in all_poses])
-    centres[0] = interior.centred(centres[0], slices.radius)
-    plan = _plan(analysis, graph, slices, centres, np.stack(all_poses), interior)
+    others = _checked_poses(analysis, poses)
+    at_rest = interior.centred(slices.means(analysis.net.positions[analysis.net.triangles].mean(axis=1)), slices.radius)
+    centres = np.stack([at_rest, *(slices.means(triangle_centres(analysis, vertices)) for vertices in others)])
+    plan = _plan(analysis, graph, slices, centres, np.stack([analysis.mesh.vertices, *others]), interior)
     limbs = [
         lay_limb(chain, ends, slices, centres, n_pieces) for chain, ends in zip(plan.chains, plan.ends, strict=True)
     ]
     return _assembled(analysis, plan, limbs, slices, interior, labels)
+
+
+def _checked_poses(analysis: Analysis, poses: Sequence[ArrayLike]) -> list[Floats]:
+    """Return further poses as arrays, or say which one has the wrong number of vertices."""
+    arrays = [np.asarray(pose, dtype=np.float64) for pose in poses]
+    for number, pose in enumerate(arrays, start=1):
+        if pose.shape != analysis.mesh.vertices.shape or not np.isfinite(pose).all():
+            n_vertices = len(analysis.mesh.vertices)
+            raise MeshError(f"Pose {number} needs a finite place for each of the {n_vertices} vertices of the mesh.")
+    return arrays
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +137,7 @@ def _plan(
 ) -> _Plan:
     tips = _tips(analysis, graph, slices)
     chains, hubs = _with_middle(chains_between(graph, slices, tips), tips, slices, centres)
-    root = _central(hubs, analysis.surface.mesh.vertices[np.unique(analysis.surface.mesh.triangles)])
+    root = _root(chains, hubs, slices)
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
     nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
@@ -185,9 +197,15 @@ def _is_inside(chain: Chain, hubs: list[Hub]) -> bool:
     return start == end >= 0 and chain.start != chain.end
 
 
-def _central(hubs: list[Hub], points: Floats) -> int:
-    distance = [np.linalg.norm(hub.places[0] - points.mean(axis=0)) for hub in hubs]
-    return int(np.argmin(distance))
+def _root(chains: list[Chain], hubs: list[Hub], slices: Slices) -> int:
+    """Return the hub farthest from the bluntest limb: the hips, as that limb is the head in most cases."""
+    blunt = max(
+        (chain for chain in chains if hub_number(hubs, chain.end) < 0),
+        key=lambda chain: float(np.median(slices.radius[chain.slices]) / slices.length[chain.slices].sum()),
+        default=chains[0],
+    )
+    head = hubs[hub_number(hubs, blunt.start)].places[0]
+    return int(np.argmax([np.linalg.norm(hub.places[0] - head) for hub in hubs]))
 
 
 def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:

@@ -1,6 +1,7 @@
 """The inside of a surface: which points lie there, and the nearest place in the middle of the flesh."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -81,18 +82,48 @@ class Interior:
 
     def holds(self, points: Floats) -> Bools:
         """Tell (p,) which points lie inside, by the crossings of three rays each; two of them decide."""
-        return np.sum([self._crossings(points, ray) % 2 for ray in RAYS], axis=0) >= 2
+        return np.sum([shadow.crossings(points) % 2 for shadow in self._shadows], axis=0) >= 2
 
-    def _crossings(self, points: Floats, ray: Floats) -> Ints:
-        """Return how many triangles the ray from each point meets."""
+    @cached_property
+    def _shadows(self) -> list["_Shadow"]:
+        return [_Shadow.along(self.corners, ray) for ray in RAYS]
+
+
+@dataclass(frozen=True, eq=False)
+class _Shadow:
+    """Triangles seen along a direction.
+
+    Attributes
+    ----------
+    frame : (3, 3) float64
+        The direction in its last row, two across it before.
+    corners : (T, 3, 3) float64
+        In that frame.
+    low, high : (3, T) float64
+        Bounds of each triangle.
+    """
+
+    frame: Floats
+    corners: Floats
+    low: Floats
+    high: Floats
+
+    @classmethod
+    def along(cls, corners: Floats, ray: Floats) -> "_Shadow":
         side = np.cross(ray, [0.3, 0.8, 0.5])
         frame = np.stack([side, np.cross(ray, side), ray])
-        seen = self.corners @ frame.T
-        low, high = seen.min(axis=1), seen.max(axis=1)
+        seen = corners @ frame.T
+        first, second, third = np.ascontiguousarray(seen.transpose(1, 2, 0))
+        low = np.minimum(np.minimum(first, second), third)
+        return cls(frame, seen, low, np.maximum(np.maximum(first, second), third))
+
+    def crossings(self, points: Floats) -> Ints:
+        """Return how many triangles the ray from each point meets."""
         counts = []
-        for x, y, z in points @ frame.T:
-            near = (low[:, 0] <= x) & (x <= high[:, 0]) & (low[:, 1] <= y) & (y <= high[:, 1]) & (high[:, 2] >= z)
-            counts.append(_n_above(seen[near], np.array([x, y]), z))
+        for x, y, z in points @ self.frame.T:
+            near = np.flatnonzero((self.low[0] <= x) & (x <= self.high[0]))
+            near = near[(self.low[1, near] <= y) & (y <= self.high[1, near]) & (self.high[2, near] >= z)]
+            counts.append(_n_above(self.corners[near], np.array([x, y]), z))
         return np.array(counts, dtype=np.int64)
 
 

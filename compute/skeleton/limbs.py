@@ -14,6 +14,8 @@ ROOTED = 0.5
 # A limb turns about a point this many of its radii deeper than where it comes free of the body, as shoulders, hips and
 # knuckles do.
 DEPTH = 0.75
+# But no deeper than this fraction of the way to the hub.
+MOST_OF_WAY = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +109,8 @@ def _deeper(curve: Curve, joint: int, following: int, ends: Ends, before: int) -
     # Its own axis shows a little further out, where nothing of the body is left.
     beyond = np.searchsorted(curve.along, curve.along[joint] + 2 * curve.radius[joint])
     axis = curve.places[0, min(int(beyond), following)] - place
-    return place - DEPTH * curve.radius[joint] * axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
+    depth = min(DEPTH * float(curve.radius[joint]), MOST_OF_WAY * _gap(ends.places[0, 0], place))
+    return place - depth * axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
 
 
 def _borders(chain: Chain, ends: Ends, slices: Slices, places: Floats, radius: Floats) -> Ints:
