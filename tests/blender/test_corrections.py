@@ -45,7 +45,7 @@ def correct_everything(obj):
     bpy.ops.eigenparts.set_branch_level(part=first, level=n_levels(obj) - 1)
     bpy.ops.eigenparts.split_part(part=second, position=0.3)
     bpy.ops.eigenparts.move_border(part=first, offset=-0.05)
-    neighbour, parent = next((part, row) for part, row in rows(obj).items() if row.depth == 1)
+    neighbour = next(part for part, row in rows(obj).items() if row.depth == 1)
     bpy.ops.eigenparts.merge_parts(part=neighbour, into=_parent_of(obj, neighbour))
     paint(obj, np.flatnonzero(labels_of(obj) == 0)[:40], new=True)
     return labels_of(obj)
