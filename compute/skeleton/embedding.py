@@ -14,7 +14,7 @@ from ..msc.reeb import ReebGraph
 from .branching import Chain, chains_between
 from .hubs import Hub, gathered_hubs, hub_number
 from .interior import Interior
-from .limbs import Ends, Limb, lay_limb
+from .limbs import Ends, Limb, lay_limb, trace_limb, with_equal_joints
 from .ownership import bones_of_vertices
 from .slices import Slices, slice_arcs, triangle_centres
 
@@ -63,6 +63,7 @@ def skeleton(
     labels: NDArray[np.int32] | None = None,
     poses: Sequence[ArrayLike] = (),
     n_pieces: int = 1,
+    partner: Ints | None = None,
 ) -> Skeleton:
     """Return joints and bones of a shape from the Reeb graph of its field.
 
@@ -81,6 +82,8 @@ def skeleton(
         The vertices in other poses.
     n_pieces : int
         Bones that a long straight limb is divided into, so that it can be bent.
+    partner : (P,) int64, optional
+        For each label the part that is its mirror image, as of `mirror_parts`: both get joints at the same places.
 
     Raises
     ------
@@ -104,9 +107,12 @@ def skeleton(
     at_rest = interior.centred(slices.means(analysis.net.positions[analysis.net.triangles].mean(axis=1)), slices.radius)
     centres = np.stack([at_rest, *(slices.means(triangle_centres(analysis, vertices)) for vertices in others)])
     plan = _plan(analysis, graph, slices, centres, np.stack([analysis.mesh.vertices, *others]), interior)
-    limbs = [
-        lay_limb(chain, ends, slices, centres, n_pieces) for chain, ends in zip(plan.chains, plan.ends, strict=True)
+    traces = [
+        trace_limb(chain, ends, slices, centres, n_pieces) for chain, ends in zip(plan.chains, plan.ends, strict=True)
     ]
+    if partner is not None:
+        traces = with_equal_joints(traces, slices, partner)
+    limbs = [lay_limb(trace, slices) for trace in traces]
     return _assembled(analysis, plan, limbs, slices, interior, labels)
 
 

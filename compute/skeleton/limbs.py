@@ -1,6 +1,6 @@
 """Limbs: chains of slices laid into space, with joints where they begin, bend and end."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,8 +65,30 @@ class Ends:
     parts: tuple[int, int]
 
 
-def lay_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_pieces: int) -> Limb:
-    """Return the bones along a chain.
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """The middle line of a chain with the joints on it.
+
+    Attributes
+    ----------
+    chain : Chain
+    ends : Ends
+    curve : Curve
+    joints : (n + 1,) int64
+        Points of the curve, both ends among them.
+    point_of_slice : (s,) int64
+        The point of the curve that each slice lies at.
+    """
+
+    chain: Chain
+    ends: Ends
+    curve: Curve
+    joints: Ints
+    point_of_slice: Ints
+
+
+def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_pieces: int) -> Trace:
+    """Return the middle line of a chain and where it has joints.
 
     Parameters
     ----------
@@ -81,24 +103,37 @@ def lay_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_pieces
     radius = slices.radius[chain.slices]
     places = np.concatenate([ends.places[:, :1], centres[:, chain.slices], ends.places[:, 1:]], axis=1)
     curve, length = resampled(places, np.concatenate([radius[:1], radius, radius[-1:]]))
-    fixed = np.searchsorted(curve.along, length[_borders(chain, ends, slices, places, radius)])
     last = len(curve.along) - 1
-    joints = joints_along(curve, np.unique(np.clip(np.concatenate([[0], fixed, [last]]), 0, last)), n_pieces)
-    point = np.minimum(np.searchsorted(curve.along, length[1:-1]), last)
-    bone = np.searchsorted(joints[1:-1], point, side="right")
+    point = np.minimum(np.searchsorted(curve.along, length), last)
+    fixed = np.unique(np.concatenate([[0], point[_borders(chain, ends, slices, places, radius)], [last]]))
+    return Trace(chain, ends, curve, joints_along(curve, fixed, n_pieces), point[1:-1])
+
+
+def with_equal_joints(traces: list[Trace], slices: Slices, partner: Ints) -> list[Trace]:
+    """Return the traces, those of limbs that are mirror images of each other with joints at the same places."""
+    of_part = {int(slices.part[trace.chain.slices[-1]]): trace for trace in traces if trace.ends.end < 0}
+    equal = {}
+    for part, trace in of_part.items():
+        other = of_part.get(int(partner[part])) if part < len(partner) else None
+        if other is not None and other is not trace:
+            equal[trace] = _agreed(*sorted([trace.joints, other.joints], key=lambda joints: (len(joints), *joints)))
+    return [replace(trace, joints=equal[trace]) if trace in equal else trace for trace in traces]
+
+
+def _agreed(fewer: Ints, more: Ints) -> Ints:
+    """Return the mean of two rows of joints, or the longer one."""
+    return more if len(fewer) < len(more) else np.unique((fewer + more + 1) // 2)
+
+
+def lay_limb(trace: Trace, slices: Slices) -> Limb:
+    """Return the bones along a chain."""
+    chain, ends, curve, joints = trace.chain, trace.ends, trace.curve, trace.joints
+    bone = np.searchsorted(joints[1:-1], trace.point_of_slice, side="right")
     part = _main_parts(bone, slices.part[chain.slices], slices.length[chain.slices], len(joints) - 1, ends)
     places = curve.places[0, joints].copy()
-    for first in np.flatnonzero(part[1:] != part[:-1]) + 1:
+    for first in (np.flatnonzero(part[1:] != part[:-1]) + 1).tolist():
         places[first] = _deeper(curve, joints[first], joints[first + 1], ends, int(part[first - 1]))
-    return Limb(
-        ends.start,
-        ends.end,
-        places[1:],
-        curve.radius[joints[1:]],
-        part,
-        chain.slices,
-        bone,
-    )
+    return Limb(ends.start, ends.end, places[1:], curve.radius[joints[1:]], part, chain.slices, bone)
 
 
 def _deeper(curve: Curve, joint: int, following: int, ends: Ends, before: int) -> Floats:
