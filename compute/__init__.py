@@ -11,6 +11,9 @@ from .msc.reeb import ReebGraph
 from .registration.matching import Matching, match
 from .registration.population import register
 from .segmentation.parts import Segmentation
+from .skeleton.binding import binding_weights
+from .skeleton.embedding import Skeleton, skeleton
+from .skeleton.symmetry import mirror_parts
 
 __all__ = [
     "Analysis",
@@ -26,15 +29,19 @@ __all__ = [
     "ReebGraph",
     "RegistrationError",
     "Segmentation",
+    "Skeleton",
     "SpectrumError",
     "TriangleMesh",
     "analyze",
+    "binding_weights",
     "diagram_distance",
     "match",
+    "mirror_parts",
     "persistence_curve",
     "reeb_graph",
     "register",
     "size_function",
+    "skeleton",
     "solve_eigenbasis",
     "zero_level",
 ]
