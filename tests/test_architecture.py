@@ -19,7 +19,7 @@ MAY_IMPORT = {
 OUTSIDE = {
     "compute": {"numpy", "scipy"},
     "operators": {"bl_operators", "bmesh", "bpy", "numpy"},
-    "cli": {"bpy", "numpy"},
+    "cli": {"bpy", "distributed", "numpy"},
     "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils"},
 }
 

@@ -2,12 +2,19 @@
 
 import importlib
 import json
+from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 
+from tests.shapes import star
 from tools.extension import load_extension
 
 bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module")
+
+from tests.cli.files import write_off  # noqa: E402
+
+SCHEMA = Draft202012Validator(json.loads(Path(__file__).parents[2].joinpath("cli/report.schema.json").read_text()))
 
 
 @pytest.fixture(autouse=True)
@@ -26,7 +33,9 @@ def run(capfd):
         capfd.readouterr()
         code = extension.cli.main([str(argument) for argument in arguments])
         out, err = capfd.readouterr()
-        return code, json.loads(out) if "--json" in arguments else out.splitlines(), err.splitlines()
+        if "--json" in arguments and out:
+            assert list(SCHEMA.iter_errors(json.loads(out))) == []
+        return code, json.loads(out) if "--json" in arguments and out else out.splitlines(), err.splitlines()
 
     return call
 
@@ -34,11 +43,4 @@ def run(capfd):
 @pytest.fixture(scope="session")
 def star_off(tmp_path_factory):
     """A star with five arms as an .off file."""
-    from tests.shapes import star
-
-    mesh = star(n_arms=5, n_subdivisions=3)
-    vertices = [" ".join(map(repr, row)) for row in mesh.vertices.tolist()]
-    faces = [" ".join(map(str, [3, *row])) for row in mesh.triangles.tolist()]
-    path = tmp_path_factory.mktemp("files") / "star.off"
-    path.write_text("\n".join(["OFF", f"{len(vertices)} {len(faces)} 0", *vertices, *faces]) + "\n")
-    return path
+    return write_off(star(n_arms=5, n_subdivisions=3), tmp_path_factory.mktemp("files") / "star.off")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze
+from tests.cli.files import add_object
 from tests.shapes import icosphere, star
 
 EXPORTERS = {
@@ -17,12 +18,6 @@ EXPORTERS = {
     ".fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path),
     ".blend": lambda path: bpy.ops.wm.save_as_mainfile(filepath=path, copy=True),
 }
-
-
-def add_object(mesh, name="star"):
-    data = bpy.data.meshes.new(name)
-    data.from_pydata(mesh.vertices.tolist(), [], mesh.triangles.tolist())
-    bpy.context.collection.objects.link(bpy.data.objects.new(name, data))
 
 
 @pytest.fixture(params=list(EXPORTERS))

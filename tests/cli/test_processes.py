@@ -1,0 +1,193 @@
+"""Files done in processes of their own, here and on a cluster."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.cli.files import write_off
+from tests.shapes import star
+
+LAUNCHER = Path(__file__).parents[2] / "cli" / "launch.py"
+# Stands in for the command line: does each file at once, but one of these makes its process end without a word.
+STAND_IN = """
+import json, os, pathlib, signal, sys
+for file in sys.argv[sys.argv.index("--") + 1:]:
+    once = pathlib.Path(file + ".once")
+    if "deadly" in file or "unlucky" in file and not once.exists():
+        once.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    print("Blender says something")
+    print(json.dumps({"version": 1, "file": file, "error": "done by the stand-in.", "seconds": 0.0}), flush=True)
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Six stars in two folders."""
+    for k in range(6):
+        write_off(star(3 + k % 3, 2), tmp_path / "in" / str(k % 2) / f"star{k}.off")
+    return tmp_path / "in"
+
+
+@pytest.fixture
+def command_line(tmp_path):
+    """The command line in a process of its own."""
+
+    def start(*arguments, **options):
+        command = [sys.executable, "-P", LAUNCHER, "", *arguments]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        return subprocess.Popen(list(map(str, command)), cwd=tmp_path, **pipes | options)
+
+    return start
+
+
+def texts_of(folder):
+    return {path.name: path.read_text() for path in folder.rglob("star*_parts.off")}
+
+
+def reports_in(folder):
+    return [path for path in folder.rglob("star*_parts.off.json") if not path.parent.name.startswith(".")]
+
+
+def test_processes_do_the_same_as_one(run, folder, tmp_path):
+    run("batch", folder, "--output", tmp_path / "one")
+    code, report, _ = run("batch", folder, "--output", tmp_path / "two", "--jobs", 2, "--json")
+    assert code == 0
+    assert sorted(file["file"] for file in report["files"]) == sorted(map(str, folder.rglob("*.off")))
+    assert texts_of(tmp_path / "one") == texts_of(tmp_path / "two")
+    # What processes finished counts as finished for all.
+    assert run("batch", folder, "--output", tmp_path / "two")[2] == ["0 of 0 files (6 finished before)"]
+
+
+def test_processes_register_to_the_same_reference(run, folder):
+    files = sorted(folder.rglob("*.off"))[:2]
+    _, alone, _ = run("register", *files, "--json")
+    code, together, _ = run("register", *files, "--jobs", 2, "--json")
+    assert code == 0
+    assert parts_of(together) == parts_of(alone)
+
+
+def parts_of(report):
+    return sorted((file["file"], file["objects"][0]["parts"]) for file in report["files"])
+
+
+@pytest.fixture
+def stand_in(run, monkeypatch):
+    """Processes that do nothing, and die of some files."""
+    run("--help")
+    from eigenparts.cli import processes
+
+    monkeypatch.setattr(processes, "own_command", lambda: [sys.executable, "-c", STAND_IN])
+
+
+def test_a_file_that_kills_its_process_takes_no_other_with_it(run, stand_in, tmp_path):
+    names = [f"{kind}{number}.off" for number in range(40) for kind in ("deadly", "good", "unlucky")]
+    for name in names:
+        (tmp_path / name).touch()
+    _, _, errors = run("batch", tmp_path, "--jobs", 3)
+    told = dict(line.removeprefix(f"{tmp_path}/").split(": ", 1) for line in errors if ".off: " in line)
+    assert sorted(told) == sorted(names)
+    deaths = [name for name, problem in told.items() if "ended twice" in problem and "signal 9" in problem]
+    assert sorted(deaths) == sorted(name for name in names if name.startswith("deadly"))
+    assert all("done by the stand-in" in told[name] for name in names if not name.startswith("deadly"))
+
+
+def test_a_command_that_is_not_there_fails_every_file(run, folder, monkeypatch):
+    run("--help")
+    from eigenparts.cli import processes
+
+    monkeypatch.setattr(processes, "own_command", lambda: ["/there/is/no/blender"])
+    code, _, errors = run("batch", folder, "--jobs", 2)
+    assert code == 1
+    assert sum("no/blender" in line for line in errors) == 6
+
+
+def test_a_worker_killed_in_the_middle_costs_nothing(command_line, folder):
+    batch = command_line("batch", folder, "--jobs", 2)
+    victims = wait_for(lambda: psutil.Process(batch.pid).children())
+    victims[0].kill()
+    out, err = batch.communicate(timeout=200)
+    assert batch.returncode == 0, err
+    assert len(out.splitlines()) == 6
+    assert len(texts_of(folder)) == 6
+    assert not list(folder.rglob(".eigenparts-*"))
+
+
+def test_a_batch_killed_in_the_middle_is_resumed(command_line, folder, tmp_path):
+    batch = command_line("batch", folder)
+    wait_for(lambda: reports_in(folder))
+    batch.kill()
+    batch.communicate()
+    n_finished = len(reports_in(folder))
+    again = command_line("batch", folder)
+    out, err = again.communicate(timeout=200)
+    assert again.returncode == 0
+    assert f"({n_finished} finished before)" in err
+    assert len(out.splitlines()) == 6 - n_finished
+    assert len(texts_of(folder)) == 6
+
+
+def wait_for(something):
+    """Return what appears within a minute or two."""
+    for _ in range(1200):
+        if found := something():
+            return found
+        time.sleep(0.1)
+    raise AssertionError("it never came")
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A dask scheduler and two workers; yields its address."""
+    pytest.importorskip("distributed", reason="needs dask")
+    dask = [sys.executable, "-m", "dask"]
+    address_file = tmp_path / "scheduler.json"
+    options = ["--no-dashboard", "--scheduler-file", str(address_file)]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
+    scheduler = subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *options], **quiet)
+    workers = [subprocess.Popen([*dask, "worker", *options, "--nthreads", "1", "--no-nanny"], **quiet) for _ in "12"]
+    yield address_file, workers
+    for process in (*workers, scheduler):
+        process.terminate()
+        process.wait()
+
+
+def test_a_cluster_does_the_same_as_one_process(run, command_line, cluster, folder, tmp_path):
+    address_file, _ = cluster
+    run("batch", folder, "--output", tmp_path / "one")
+    batch = command_line("batch", folder, "--output", tmp_path / "many", "--scheduler", address_of(address_file))
+    out, err = batch.communicate(timeout=300)
+    assert batch.returncode == 0, err
+    assert len(out.splitlines()) == 6
+    assert texts_of(tmp_path / "one") == texts_of(tmp_path / "many")
+
+
+def test_a_lost_machine_costs_nothing(command_line, cluster, folder):
+    address_file, workers = cluster
+    batch = command_line("batch", folder, "--scheduler", address_of(address_file))
+    wait_for(lambda: reports_in(folder))
+    workers[0].kill()
+    _, err = batch.communicate(timeout=300)
+    assert batch.returncode == 0, err
+    assert len(texts_of(folder)) == 6
+
+
+def address_of(address_file):
+    wait_for(address_file.exists)
+    return json.loads(wait_for(address_file.read_text))["address"]
+
+
+def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tmp_path):
+    run("--help")
+    from eigenparts.cli import processes
+
+    monkeypatch.setattr(processes, "PATIENCE", 1)
+    code, _, errors = run("segment", star_off, "--scheduler", "tcp://127.0.0.1:9", "--output", tmp_path)
+    assert (code, errors) == (1, ["no dask scheduler answers at tcp://127.0.0.1:9."])
+    assert os.listdir(tmp_path) == []
