@@ -26,6 +26,10 @@ BLOCK_UNKNOWNS = 5000
 DENSE_UNKNOWNS = 400
 DENSE_SHARE = 1 / 5
 
+# A richer space cannot have larger eigenvalues (Courant and Fischer): one that exceeds the linear value of its number
+# by more than this part of the largest betrays that another was missed.
+ROUNDING = 1e-9
+
 # Functions that are iterated at a time; more where symmetry makes eigenvalues multiple, which linear elements show.
 LEAST_WIDTH = 4
 SAME_VALUE = 1e-3
@@ -49,17 +53,20 @@ class EigenProblem:
         Which unknowns are solved for; the functions are zero at the others.
     metric : Metric
         Shape of the triangles.
+    leaves : (T,) int, optional
+        Codes from `bisect_triangles`. Without them the factorization finds an order of elimination by itself.
     """
 
     space: FunctionSpace
     is_free: Bools
     metric: Metric
+    leaves: Ints | None
 
     @cached_property
     def linear(self) -> "EigenProblem":
         """The same with linear elements."""
         space = function_space(self.space.mesh, 1)
-        return EigenProblem(space, self.is_free[: space.n_unknowns], self.metric)
+        return EigenProblem(space, self.is_free[: space.n_unknowns], self.metric, self.leaves)
 
     def element_matrices(self) -> tuple[Floats, Floats]:
         """Return (T, n, n) stiffness and mass of each triangle."""
@@ -67,29 +74,34 @@ class EigenProblem:
 
     @cached_property
     def elimination_order(self) -> Ints:
-        """The free unknowns, for higher orders in an order of elimination that keeps factors sparse."""
-        if self.space.element.order == 1:
+        """The free unknowns; if the leaves are known, in an order of elimination that keeps factors sparse."""
+        if self.leaves is None:
             return np.flatnonzero(self.is_free)
-        unknowns = elimination_order(self.space.elements, bisect_triangles(self.space.mesh), self.space.n_unknowns)
+        unknowns = elimination_order(self.space.elements, self.leaves, self.space.n_unknowns)
         return unknowns[self.is_free[unknowns]]
-
-    def factored(self, stiffness: csr_array, mass: csr_array) -> SuperLU:
-        """Return the factor of the shifted operator, given the matrices in the order of elimination."""
-        is_ordered = self.space.element.order > 1
-        return factored_as_ordered(stiffness, mass) if is_ordered else factored_by_columns(stiffness, mass)
 
     def matrices(self, unknowns: Ints) -> tuple[csr_array, csr_array]:
         """Return stiffness and mass of some unknowns, in their order."""
         row = np.full(self.space.n_unknowns, len(unknowns))
         row[unknowns] = np.arange(len(unknowns))
-        # All others share one more row, which is cut off.
-        stiffness, mass = (assemble(row[self.space.elements], m, len(unknowns) + 1) for m in self.element_matrices())
-        return stiffness[:-1, :-1], mass[:-1, :-1]
+        stiffness, mass = (
+            of_element(self.metric, self.space.element) for of_element in (element_stiffness, element_mass)
+        )
+        # Real and imaginary part of one matrix share the work. All other unknowns share one more row, which is cut off.
+        both = assemble(row[self.space.elements], stiffness + 1j * mass, len(unknowns) + 1)[:-1, :-1]
+        return both.real.copy(), both.imag.copy()
+
+    def factored(self, stiffness: csr_array, mass: csr_array) -> SuperLU:
+        """Return the factor of the shifted operator, given the matrices in the order of elimination."""
+        factored = factored_by_columns if self.leaves is None else factored_as_ordered
+        return factored(stiffness, mass)
 
 
 def eigen_problem(space: FunctionSpace, is_free: Bools) -> EigenProblem:
     """Return the eigenvalue problem for the free unknowns of a space."""
-    return EigenProblem(space, is_free, metric(space.mesh))
+    # Linear elements alone are solved before the bisection pays.
+    leaves = bisect_triangles(space.mesh) if space.element.order > 1 else None
+    return EigenProblem(space, is_free, metric(space.mesh), leaves)
 
 
 def lowest_eigenpairs(
@@ -131,7 +143,7 @@ def lowest_eigenpairs(
     close = slice(n_pairs + N_EXTRA)
     width = max(LEAST_WIDTH, _multiplicity(values[close]) + 1)
     start = functions[:, close] @ _mixture(functions[:, close].shape[1], width)
-    return _block_eigenpairs(problem, start, n_pairs, section(progress, 0.15, 1.0))
+    return _block_eigenpairs(problem, start, values[:n_pairs], section(progress, 0.15, 1.0))
 
 
 def _multiplicity(values: Floats) -> int:
@@ -159,9 +171,10 @@ def _plain_eigenpairs(problem: EigenProblem, n_pairs: int, progress: Progress) -
 
 
 def _block_eigenpairs(
-    problem: EigenProblem, linear_start: Floats, n_pairs: int, progress: Progress
+    problem: EigenProblem, linear_start: Floats, linear_values: Floats, progress: Progress
 ) -> tuple[Floats, Floats]:
     """Return the lowest eigenpairs by block Lanczos iteration from linear functions on the same mesh."""
+    n_pairs = len(linear_values)
     space, unknowns = problem.space, problem.elimination_order
     start = np.zeros((space.n_unknowns, linear_start.shape[1]))
     start[space.elements] = space.element.barycentric @ linear_start[space.mesh.triangles]
@@ -173,6 +186,9 @@ def _block_eigenpairs(
     progress = section(progress, 0.4, 1.0)
     try:
         values, functions[unknowns] = smallest_eigenpairs(pencil, start[unknowns], n_pairs, TOLERANCE, progress)
+        is_complete = bool(np.all(values <= linear_values + ROUNDING * linear_values[-1]))
     except (SpectrumError, np.linalg.LinAlgError):
+        is_complete = False
+    if not is_complete:
         values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, progress)
     return values, functions
