@@ -1,53 +1,44 @@
-"""Registration of posed characters: ``python -m benchmarks.registration --data DIR [--pairs N] [--cache DIR]``.
+"""Matching of posed characters: ``python -m benchmarks.registration --data DIR [--pairs N] [--outcomes FILE]``.
 
 The source is a pose as it was made, the target another pose that was remeshed or decimated and shuffled. The truth is
 the connectivity that the poses share before remeshing. Beside it stand the same pairs with their own connectivity
-(matched by shape, not by number), pyFM with and without its orientation term, and pairs of kin without a truth.
+(matched by shape, not by number), some of them by pyFM with and without its orientation term, pairs of kin without a
+truth, and bodies in full resolution. With a file of outcomes, pairs that stand in it are not matched again.
 """
 
 import argparse
-import pickle
+import json
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from importlib.metadata import version
+from dataclasses import asdict, dataclass
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
-from benchmarks.posed_families import (
-    FAMILIES,
-    Mirror,
-    Pose,
-    SurfacePoints,
-    closest_points,
-    decimated,
-    find_mirror,
-    load_family,
-    read_mesh,
-    remeshed,
+from benchmarks.posed_families import FAMILIES, Mirror, Pose, find_mirror, load_family, read_mesh, shuffled
+from benchmarks.registration_peers import (
+    ORIENTATION_WEIGHTS,
+    map_of_vertices,
+    match_by_peer,
+    point_of_vertex,
+    prepare_peer,
 )
-from compute.analysis import Analysis, analyze
-from compute.fem.lagrange import reference_element
-from compute.mesh import Floats, Ints, TriangleMesh
+from benchmarks.registration_truth import JUDGED_FUNCTIONS, Copy, make_copy, map_error, misplaced
+from compute.analysis import analyze
+from compute.mesh import Ints, TriangleMesh
 from compute.registration.matching import Matching, match_shapes
-from compute.registration.population import prepare_reference, register_matched
-from compute.registration.spectral_shape import SpectralShape, spectral_shape
+from compute.registration.spectral_shape import spectral_shape
 from compute.registration.zoomout import nearest_points, with_constant
 
 # A pair is right when the map of the first functions is within this distance of the truth, relative to the identity,
 # and less than this share of the area lands on the mirrored side.
-JUDGED_FUNCTIONS = 10
 LARGEST_ERROR = 0.3
 MOST_MIRRORED = 0.05
-# Points closer to the plane of symmetry than this, in units of the root of the area, have no side.
-MIDDLE = 0.15
-COPIES: dict[str, Callable[[TriangleMesh], TriangleMesh]] = {
-    "same": lambda mesh: mesh,
-    "remeshed": remeshed,
-    "decimated": decimated,
-}
+KINDS = ("remeshed", "decimated", "same")
+OURS = "Eigenparts"
 KIN = (
     ("wolf and husky", "quaternius-animals/wolf_0_rest.off", "quaternius-animals/husky_0_rest.off"),
     ("fox and wolf", "quaternius-animals/fox_0_rest.off", "quaternius-animals/wolf_0_rest.off"),
@@ -55,23 +46,15 @@ KIN = (
     ("man and woman", "odedstein/human_man.obj", "odedstein/human_woman.obj"),
     ("horse and torus", "quaternius-animals/horse_0_rest.off", "odedstein/torus.obj"),
     ("horse and hand", "quaternius-animals/horse_0_rest.off", "webxr-hand/hand_0_rest.off"),
+    ("man and hand", "odedstein/human_man.obj", "webxr-hand/hand_0_rest.off"),
 )
 
 
-@dataclass(frozen=True, eq=False)
-class Copy:
-    """A pose, as it is or remeshed, analyzed; the points of its shape are traced to the pose they were made from."""
-
-    pose: Pose
-    analysis: Analysis
-    shape: SpectralShape
-    truth: SurfacePoints
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Outcome:
     """How one pair went."""
 
+    method: str
     family: str
     kind: str
     poses: tuple[int, int]
@@ -80,8 +63,6 @@ class Outcome:
     distance: float
     confidence: float
     seconds: float
-    labels: float = np.nan
-    swapped: float = np.nan
 
     @property
     def is_right(self) -> bool:
@@ -89,107 +70,127 @@ class Outcome:
         return self.error <= LARGEST_ERROR and self.mirrored < MOST_MIRRORED
 
 
-def make_copy(pose: Pose, kind: str, cache: Path) -> Copy:
-    """Return a copy of a pose, from the cache if it was made before."""
-    path = cache / f"{pose.family}-{pose.name}-{kind}.pickle"
-    if not path.exists():
-        analysis = analyze(COPIES[kind](pose.mesh))
-        shape = spectral_shape(analysis.matching_basis)
-        truth = closest_points(analysis.matching_basis.nodes[shape.node], pose.mesh)
-        path.write_bytes(pickle.dumps(Copy(pose, analysis, shape, truth)))
-    return pickle.loads(path.read_bytes())
+class Ledger:
+    """The outcomes so far, in a file if one is given."""
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
+        lines = path.read_text().splitlines() if path is not None and path.exists() else []
+        self.outcomes = [Outcome(**{**row, "poses": tuple(row["poses"])}) for row in map(json.loads, lines)]
+        self._known = {self._key(one.method, one.family, one.kind, one.poses) for one in self.outcomes}
+
+    def has(self, method: str, family: str, kind: str, poses: tuple[int, int]) -> bool:
+        """Whether a pair was matched before."""
+        return self._key(method, family, kind, poses) in self._known
+
+    def add(self, outcome: Outcome) -> None:
+        """Keep an outcome."""
+        self.outcomes.append(outcome)
+        if self._path is not None:
+            with self._path.open("a") as file:
+                file.write(json.dumps(asdict(outcome)) + "\n")
+
+    @staticmethod
+    def _key(*parts: str | tuple[int, int]) -> str:
+        return json.dumps(parts)
 
 
-def true_map(source: Copy, target: Copy) -> Floats:
-    """Return (k, k) the functional map that the shared connectivity of the poses gives, the constant included."""
-    basis, size = source.analysis.matching_basis, JUDGED_FUNCTIONS
-    triangle = source.analysis.surface.triangle_of_input[target.truth.triangle]
-    weights = reference_element(basis.order).evaluate(target.truth.barycentric[:, 1:])
-    functions = basis.functions[:, :size] * np.sqrt(source.analysis.surface.mesh.areas.sum())
-    carried = np.einsum("pn,pnk->pk", weights, functions[basis.elements[triangle]])
-    return target.shape.project(carried)[1 : size + 1]
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Poses with what their pairs are judged by."""
+
+    name: str
+    poses: list[Pose]
+    mirror: Mirror
+    cache: Path
+
+    def copies(self, kind: str, poses: tuple[int, int]) -> tuple[Copy, Copy]:
+        """Return the source as it was made, and the target changed."""
+        return make_copy(self.poses[poses[0]], "same", self.cache), make_copy(self.poses[poses[1]], kind, self.cache)
+
+    def pairs(self, n_pairs: int) -> list[tuple[int, int]]:
+        """Return pairs of poses, evenly chosen among all."""
+        n_poses = len(self.poses)
+        pairs = [(i, j) for i in range(n_poses) for j in range(n_poses) if i != j]
+        return [pairs[place] for place in np.unique(np.linspace(0, len(pairs) - 1, n_pairs).astype(int)).tolist()]
 
 
-def judge(matching: Matching, source: Copy, target: Copy, rest: TriangleMesh, mirror: Mirror) -> tuple[float, ...]:
-    """Return the error of the functional map, the mirrored share and the mean distance to the truth at rest."""
-    size = JUDGED_FUNCTIONS
-    error = np.linalg.norm(matching.map[:size, :size] - true_map(source, target)) / np.sqrt(size)
+def run_ours(family: Family, kind: str, poses: tuple[int, int]) -> Outcome:
+    """Match a pair."""
+    copies = family.copies(kind, poses)
+    start = time.process_time()
+    # Shapes anew, so that what is kept on them is computed within the time measured.
+    matching = match_shapes(*(spectral_shape(copy.analysis.matching_basis) for copy in copies))
+    seconds = time.process_time() - start
+    queries = copies[1].shape.samples
+    wrong = misplaced(_landed(matching, *copies), queries, copies, family.poses[0].mesh, family.mirror)
+    error = map_error(matching.map, *copies)
+    return Outcome(OURS, family.name, kind, poses, error, *wrong, matching.confidence, seconds)
+
+
+def _landed(matching: Matching, source: Copy, target: Copy) -> Ints:
+    """Return the source's point that each sample of the target lands on."""
     queries, places = target.shape.samples, source.shape.samples
-    functional_map = with_constant(matching.map)
-    landed = places[nearest_points(functional_map, source.shape.functions[places], target.shape.functions[queries])]
-    true_places, found = _at(target.truth, queries, rest), _at(source.truth, landed, rest)
-    unit = np.sqrt(rest.areas.sum())
-    images = mirror.reflected(true_places)
-    away, to_image, sides = (
-        np.linalg.norm(a - b, axis=1) / unit for a, b in ((found, true_places), (found, images), (images, true_places))
-    )
-    return float(error), float(((to_image < away) & (sides > MIDDLE)).mean()), float(away.mean())
+    here, there = source.shape.functions[places], target.shape.functions[queries]
+    return places[nearest_points(with_constant(matching.map), here, there)]
 
 
-def _at(points: SurfacePoints, chosen: Ints, mesh: TriangleMesh) -> Floats:
-    return SurfacePoints(points.triangle[chosen], points.barycentric[chosen]).on(mesh)
+def run_peer(method: str, family: Family, kind: str, poses: tuple[int, int]) -> Outcome:
+    """Match a pair by pyFM."""
+    copies = family.copies(kind, poses)
+    prepared = [prepare_peer(copy.analysis.mesh) for copy in copies]
+    start = time.process_time()
+    vertices = match_by_peer(*prepared, ORIENTATION_WEIGHTS[method])
+    seconds = time.process_time() - start
+    landed, queries = point_of_vertex(copies[0])[vertices], point_of_vertex(copies[1])
+    wrong = misplaced(landed, queries, copies, family.poses[0].mesh, family.mirror)
+    error = map_error(map_of_vertices(vertices, *copies, JUDGED_FUNCTIONS), *copies)
+    return Outcome(method, family.name, kind, poses, error, *wrong, float("nan"), seconds)
 
 
-def judge_labels(source: Copy, target: Copy, matching: Matching) -> tuple[float, float]:
-    """Return the share of area with the true label, and that with a part where the truth has another part."""
-    reference = prepare_reference(source.analysis, source.analysis.segment())
-    found = register_matched(reference, target.analysis, target.shape, matching).segmentation.labels
-    mesh = target.analysis.mesh
-    middles = mesh.vertices[mesh.triangles].mean(axis=1)
-    true = reference.parts.segmentation.labels[closest_points(middles, target.pose.mesh).triangle]
-    share = mesh.areas / mesh.areas.sum()
-    return float(share[true == found].sum()), float(share[(true != found) & (true > 0) & (found > 0)].sum())
+def run_family(family: Family, kinds: list[str], n_pairs: int, peer_every: int, ledger: Ledger) -> None:
+    """Match pairs of a family, and some of them by the peer."""
+    for kind in kinds:
+        for place, poses in enumerate(family.pairs(n_pairs)):
+            if not ledger.has(OURS, family.name, kind, poses):
+                ledger.add(run_ours(family, kind, poses))
+            for method in ORIENTATION_WEIGHTS:
+                if place % peer_every == 0 and not ledger.has(method, family.name, kind, poses):
+                    ledger.add(run_peer(method, family, kind, poses))
 
 
-def run_family(data: Path, family: str, cache: Path, n_pairs: int, *, labels_every: int = 4) -> Iterator[Outcome]:
-    """Yield the outcomes of pairs of a family, evenly chosen among all: source as made, target remeshed."""
-    poses = load_family(data, family)
-    if not poses:
-        print(f"{family}: no files, left out")
-        return
-    mirror = find_mirror(poses[0].mesh)
-    for kind in ("remeshed", "decimated", "same"):
-        pairs = [(i, j) for i in range(len(poses)) for j in range(len(poses)) if i != j]
-        for place in np.unique(np.linspace(0, len(pairs) - 1, min(n_pairs, len(pairs))).astype(int)).tolist():
-            i, j = pairs[place]
-            source, target = make_copy(poses[i], "same", cache), make_copy(poses[j], kind, cache)
-            start = time.process_time()
-            # Shapes anew, so that what is kept on them is computed within the time measured.
-            shapes = (spectral_shape(copy.analysis.matching_basis) for copy in (source, target))
-            matching = match_shapes(*shapes)
-            seconds = time.process_time() - start
-            verdict = judge(matching, source, target, poses[0].mesh, mirror)
-            with_labels = kind != "same" and place % labels_every == 0
-            labels = judge_labels(source, target, matching) if with_labels else (np.nan, np.nan)
-            yield Outcome(family, kind, (i, j), *verdict, matching.confidence, seconds, *labels)
+def families(data: Path, names: list[str], cache: Path) -> Iterator[Family]:
+    """Yield the families whose files are there."""
+    for name in names:
+        poses = load_family(data, name)
+        if poses:
+            yield Family(name, poses, find_mirror(poses[0].mesh), cache)
+        else:
+            print(f"{name}: no files, left out")
 
 
-def table(outcomes: list[Outcome]) -> list[str]:
-    """Return the Markdown table of all families."""
-    lines = [
-        "| family | pairs | right | same connectivity | sure | of these right | labels right | other part | CPU s |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    families = [*dict.fromkeys(outcome.family for outcome in outcomes), "all"]
-    for family in families:
-        lines.append(_row(family, [one for one in outcomes if family in (one.family, "all")]))
-    return lines
+def table(outcomes: list[Outcome]) -> Iterator[str]:
+    """Yield the Markdown table of all families."""
+    yield "| family | pairs | right | sure | of these right | distance | CPU s | same connectivity |"
+    yield "|---|---|---|---|---|---|---|---|"
+    ours = [one for one in outcomes if one.method == OURS]
+    for family in [*dict.fromkeys(one.family for one in ours), "all"]:
+        yield _row(family, [one for one in ours if family in (one.family, "all")])
 
 
 def _row(name: str, outcomes: list[Outcome]) -> str:
     hard = [one for one in outcomes if one.kind != "same"]
-    same = [one for one in outcomes if one.kind == "same"]
     sure = [one for one in hard if one.confidence > 0.5]
+    seconds = [one.seconds for one in hard]
     cells = (
         name,
         len(hard),
         _share(hard),
-        _share(same),
         f"{len(sure) / max(len(hard), 1):.1%}",
         _share(sure),
-        f"{np.nanmean([one.labels for one in hard]):.1%}",
-        f"{np.nanmean([one.swapped for one in hard]):.2%}",
-        f"{np.mean([one.seconds for one in hard]):.2f} (max {max(one.seconds for one in hard):.1f})",
+        f"{100 * np.mean([one.distance for one in hard]):.1f}",
+        f"{np.median(seconds):.2f}, at most {max(seconds):.1f}",
+        _share([one for one in outcomes if one.kind == "same"]),
     )
     return "| " + " | ".join(map(str, cells)) + " |"
 
@@ -198,14 +199,29 @@ def _share(outcomes: list[Outcome]) -> str:
     return f"{sum(one.is_right for one in outcomes)} of {len(outcomes)}"
 
 
-def failures(outcomes: list[Outcome]) -> list[str]:
-    """Return a line for each pair that is wrong or not sure."""
-    return [
-        f"- {one.family} {one.poses[0]} to {one.poses[1]}, {one.kind}: {'right' if one.is_right else 'WRONG'},"
-        f" map error {one.error:.2f}, mirrored {one.mirrored:.1%}, confidence {one.confidence:.2f}"
-        for one in outcomes
-        if not one.is_right or one.confidence <= 0.5
-    ]
+def peer_table(outcomes: list[Outcome]) -> Iterator[str]:
+    """Yield the Markdown table of the pairs that the peer matched as well."""
+    pairs = {(one.family, one.kind, one.poses) for one in outcomes if one.method != OURS}
+    yield "| method | right, remeshed or decimated | same connectivity | distance | CPU s |"
+    yield "|---|---|---|---|---|"
+    for method in (OURS, *ORIENTATION_WEIGHTS):
+        own = [one for one in outcomes if one.method == method and (one.family, one.kind, one.poses) in pairs]
+        hard, same = [one for one in own if one.kind != "same"], [one for one in own if one.kind == "same"]
+        if own:
+            distance = 100 * np.mean([one.distance for one in hard])
+            seconds = np.median([one.seconds for one in hard])
+            yield f"| {method} | {_share(hard)} | {_share(same)} | {distance:.1f} | {seconds:.2f} |"
+
+
+def failures(outcomes: list[Outcome]) -> Iterator[str]:
+    """Yield a line for each pair of ours that is wrong or not sure."""
+    for one in outcomes:
+        if one.method == OURS and (not one.is_right or one.confidence <= 0.5):
+            verdict = "right" if one.is_right else "WRONG"
+            yield (
+                f"- {one.family} {one.poses[0]} to {one.poses[1]}, {one.kind}: {verdict}, map error {one.error:.2f},"
+                f" mirrored {one.mirrored:.1%}, confidence {one.confidence:.2f}"
+            )
 
 
 def kin(data: Path) -> Iterator[str]:
@@ -213,11 +229,47 @@ def kin(data: Path) -> Iterator[str]:
     yield "| pair | confidence | moments agree |"
     yield "|---|---|---|"
     for name, *paths in KIN:
-        shapes = (
-            spectral_shape(analyze(read_mesh(data / path), n_functions=2, order=1).matching_basis) for path in paths
-        )
-        matching = match_shapes(*shapes)
+        matching = match_shapes(*(_quick_shape(read_mesh(data / path)) for path in paths))
         yield f"| {name} | {matching.confidence:.2f} | {matching.symmetric:.2f}, {matching.alternating:.2f} |"
+
+
+def full_resolution(data: Path) -> Iterator[str]:
+    """Yield the time of pairs of bodies as they were made, shuffled, with and without what is kept on a shape."""
+    poses = load_family(data, "makehuman")
+    yield "| pair | vertices | shapes, CPU s | match, CPU s | confidence |"
+    yield "|---|---|---|---|---|"
+    for target in poses[1:4]:
+        bases = [
+            analyze(mesh, n_functions=2, order=1).matching_basis for mesh in (poses[0].mesh, shuffled(target.mesh))
+        ]
+        start = time.process_time()
+        shapes = [spectral_shape(basis) for basis in bases]
+        middle = time.process_time()
+        matching = match_shapes(*shapes)
+        spent = f"{middle - start:.2f} | {time.process_time() - middle:.2f}"
+        yield f"| rest to {target.name} | {len(target.mesh.vertices)} | {spent} | {matching.confidence:.2f} |"
+
+
+def _quick_shape(mesh: TriangleMesh):
+    return spectral_shape(analyze(mesh, n_functions=2, order=1).matching_basis)
+
+
+def _versions() -> str:
+    found = []
+    for name in ("numpy", "scipy", "pymeshlab", "pyfmaps"):
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            found.append(f"no {name}")
+    return ", ".join(found)
+
+
+def _sections(arguments: argparse.Namespace | SimpleNamespace, ledger: Ledger) -> Iterator[Iterator[str]]:
+    reports: tuple[Callable[[list[Outcome]], Iterator[str]], ...] = (table, peer_table, failures)
+    for report in reports:
+        yield report(ledger.outcomes)
+    yield kin(arguments.data)
+    yield full_resolution(arguments.data)
 
 
 def main() -> None:
@@ -225,17 +277,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "eigenparts-registration")
+    parser.add_argument("--outcomes", type=Path, help="file that outcomes are kept in and read from")
     parser.add_argument("--pairs", type=int, default=4, help="of each family and kind of copy")
+    parser.add_argument("--peer-every", type=int, default=4, help="pyFM matches one pair in so many")
     parser.add_argument("--families", default=",".join(FAMILIES))
+    parser.add_argument("--kinds", default=",".join(KINDS), help="of copies")
     arguments = parser.parse_args()
     arguments.cache.mkdir(parents=True, exist_ok=True)
-    print(f"numpy {np.__version__}, scipy {version('scipy')}, pymeshlab {version('pymeshlab')}\n")
-    outcomes: list[Outcome] = []
-    for family in arguments.families.split(","):
-        outcomes += run_family(arguments.data, family, arguments.cache, arguments.pairs)
-        print(_row(family, [one for one in outcomes if one.family == family]), flush=True)
-    print("\n" + "\n".join(table(outcomes)) + "\n\n" + "\n".join(failures(outcomes)) + "\n")
-    print("\n".join(kin(arguments.data)))
+    print(_versions() + "\n", flush=True)
+    ledger = Ledger(arguments.outcomes)
+    for family in families(arguments.data, arguments.families.split(","), arguments.cache):
+        run_family(family, arguments.kinds.split(","), arguments.pairs, arguments.peer_every, ledger)
+        own = [one for one in ledger.outcomes if one.method == OURS and one.family == family.name]
+        print(_row(family.name, own), flush=True)
+    for section in _sections(arguments, ledger):
+        print("\n" + "\n".join(section), flush=True)
 
 
 if __name__ == "__main__":

@@ -80,10 +80,20 @@ class Analysis:
             return self._known_basis
         return solve_on_surface(self.surface, min(DEFAULT_FUNCTIONS, n_available(self.surface, "neumann")))
 
-    @cached_property
+    @property
     def matching_basis(self) -> Eigenbasis:
-        """Up to 100 free eigenfunctions for matching and dense maps; computed when first asked for and kept."""
-        return _solve_for_matching(self.surface)
+        """Up to 100 free eigenfunctions for matching and dense maps, with the signs that ``eigenbasis`` has.
+
+        Computed when first asked for and kept.
+        """
+        return self.find_matching_basis(silent)
+
+    def find_matching_basis(self, progress: Progress) -> Eigenbasis:
+        """Return ``matching_basis``, telling how far it is if it has to be computed."""
+        kept = vars(self)
+        if "_matching_basis" not in kept:
+            kept["_matching_basis"] = _solve_for_matching(self.surface, self._known_basis, progress)
+        return kept["_matching_basis"]
 
     @cached_property
     def complex(self) -> MorseSmaleComplex:
@@ -303,10 +313,20 @@ def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
     return divide_at_zero(eigenfunction_field(analysis.eigenbasis, function), analysis.mesh, analysis.surface)
 
 
-def _solve_for_matching(surface: Surface) -> Eigenbasis:
+def _solve_for_matching(surface: Surface, shown: Eigenbasis | None, progress: Progress) -> Eigenbasis:
     order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)
     n_functions = min(MATCHING_FUNCTIONS, _n_unknowns(surface, order) - 1)
-    return solve_on_surface(surface, n_functions, order=order)
+    basis = solve_on_surface(surface, n_functions, order=order, progress=progress)
+    return basis if shown is None else _with_signs_of(shown, basis, len(surface.vertex_of_input))
+
+
+def _with_signs_of(shown: Eigenbasis, basis: Eigenbasis, n_vertices: int) -> Eigenbasis:
+    """Return a basis whose functions point where those do that the user sees; elements of two orders may differ."""
+    n_shared = min(len(shown.values), len(basis.values)) if shown.boundary == basis.boundary else 0
+    functions = basis.functions.copy()
+    agreement = (shown.functions[:n_vertices, :n_shared] * functions[:n_vertices, :n_shared]).sum(axis=0)
+    functions[:, :n_shared] *= np.where(agreement < 0, -1.0, 1.0)
+    return dataclasses.replace(basis, functions=functions)
 
 
 def _n_unknowns(surface: Surface, order: int) -> int:

@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any
 
 import bpy
+import numpy as np
 
 from . import engine, exchange, results, state
 from .analysis_request import AnalysisRequest
@@ -31,6 +32,7 @@ class Outcome:
     description: str
     warnings: tuple[str, ...]
     seconds: float
+    polygon_of_triangle: np.ndarray
 
 
 class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
@@ -75,7 +77,7 @@ def outcome_of(
     stored = state.StoredAnalysis(analysis.hierarchy, analysis.branches(arrays.polygon_of_triangle))
     heights = engine.vertex_heights(analysis.surface, analysis.field)
     source = state.BorderSource(analysis.profile(arrays.edges), heights, analysis.closing_heights)
-    return Outcome(stored, source, _described(options), analysis.warnings, seconds)
+    return Outcome(stored, source, _described(options), analysis.warnings, seconds, arrays.polygon_of_triangle)
 
 
 def _described(options: dict[str, Any]) -> str:

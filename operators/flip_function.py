@@ -10,7 +10,10 @@ from .registration import SHOWN_FUNCTIONS, Wish
 
 
 class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
-    """Register the object again with the other sign of this function; both meshes are analyzed anew for it"""
+    """Register the object again with the other sign of this function, whatever fits better.
+
+    The attribute eigenfunction_1 and those that follow, which Write Eigenfunctions makes, are these functions
+    """
 
     bl_idname = "eigenparts.flip_function"
     bl_label = "Flip Function"

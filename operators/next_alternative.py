@@ -9,7 +9,7 @@ from .registration import Wish
 
 
 class EIGENPARTS_OT_next_alternative(RegistersAgain, bpy.types.Operator):
-    """Register the object by the next best matching, after the last the best; both meshes are analyzed anew for it"""
+    """Register the object by the next best matching, after the last the best"""
 
     bl_idname = "eigenparts.next_alternative"
     bl_label = "Next Alternative"

@@ -10,8 +10,10 @@ from .part_table import TABLES
 from .refusals import Refusal
 from .state import REGISTRATION, STATE
 
-# In the registration: the tables of parts that are the mesh's own.
+# In the registration: the tables of parts that are the mesh's own, and the object they are registered to, which may be
+# renamed; its name is kept beside it for files that the object is not in.
 OWN_TABLES = "own_tables"
+REFERENCE_OBJECT = "reference_object"
 # Up to this confidence a matching may well be wrong.
 SURE = 0.5
 
@@ -52,12 +54,16 @@ class Match:
     settings: dict[str, Any]
 
 
-def remember(mesh: bpy.types.Mesh, tables: dict[str, Any], match: Match) -> None:
+def remember(
+    mesh: bpy.types.Mesh, tables: dict[str, Any], match: Match, reference: bpy.types.Object | None = None
+) -> None:
     """Give an analyzed mesh the names and colours in the tables of its reference, and keep its own and the match."""
     take_back(mesh)
     own = tables_of(mesh)
     _set_tables(mesh, tables)
     mesh[STATE][REGISTRATION] = {**asdict(match), OWN_TABLES: own}
+    if reference is not None:
+        mesh[STATE][REGISTRATION][REFERENCE_OBJECT] = reference
 
 
 def take_back(mesh: bpy.types.Mesh) -> None:
@@ -75,10 +81,11 @@ def read(mesh: bpy.types.Mesh) -> Match | None:
     group = _group(mesh)
     if group is None:
         return None
+    reference = reference_object(mesh)
     try:
         order, signs = (tuple(int(number) for number in group[name]) for name in ("order", "signs"))
         return Match(
-            reference=str(group["reference"]),
+            reference=reference.name if reference is not None else str(group["reference"]),
             confidence=float(group["confidence"]),
             order=order,
             signs=signs,
@@ -91,6 +98,12 @@ def read(mesh: bpy.types.Mesh) -> Match | None:
         )
     except (AttributeError, KeyError, TypeError, ValueError):
         return None
+
+
+def reference_object(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
+    """Return the object that a mesh is registered to, whatever its name is by now; None if it is not known."""
+    found = (_group(mesh) or {}).get(REFERENCE_OBJECT)
+    return found if isinstance(found, bpy.types.Object) else None
 
 
 def registered_objects(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Object, Match]]:

@@ -1,14 +1,13 @@
 """What operators have in common that register meshes to a reference."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import bpy
-import numpy as np
 
-from . import exchange, registered, results, state
+from . import correcting, exchange, registered, results, state
 from .analysis_request import analysis_options
 from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
@@ -25,7 +24,7 @@ class Tickets:
     """Where the results belong, and what is remembered with them."""
 
     reference: Ticket
-    reference_name: str
+    reference_uid: int
     names: tuple[str, ...]
     targets: tuple[Ticket, ...]
     wish: Wish
@@ -47,13 +46,14 @@ class Registers(BackgroundOperator):
         _refuse_registered(reference)
         subjects = [_read(context, obj, settings) for obj in (reference, *targets)]
         tickets = [Ticket(obj.data.session_uid, exchange.fingerprint(obj.data)) for obj in (reference, *targets)]
-        shown, first_free = _shown(reference.data), _first_free_label(context, reference.name, targets)
+        shown, first_free = _shown(reference.data), _first_free_label(context, reference, targets)
         work = partial(register_subjects, subjects[0], shown, subjects[1:], wish, first_free)
         names = tuple(obj.name for obj in targets)
-        return work, Tickets(tickets[0], reference.name, names, tuple(tickets[1:]), wish, settings)
+        return work, Tickets(tickets[0], reference.session_uid, names, tuple(tickets[1:]), wish, settings)
 
     def finish(self, context: bpy.types.Context, tickets: Tickets, registration: Registration) -> set[str]:
         reference, *meshes = (find_mesh(ticket) for ticket in (tickets.reference, *tickets.targets))
+        obj = _object(tickets.reference_uid)
         for mesh in (reference, *meshes):
             results.refuse_foreign_results(mesh)
         _store(reference, registration.reference)
@@ -61,29 +61,28 @@ class Registers(BackgroundOperator):
         tables = registered.tables_of(reference)
         for mesh, found in zip(meshes, registration.found, strict=True):
             _store(mesh, found.outcome)
-            registered.remember(mesh, tables, match_of(found, tickets.reference_name, tickets.wish, tickets.settings))
+            registered.remember(mesh, tables, match_of(found, obj.name, tickets.wish, tickets.settings), obj)
             results.show_labels(mesh, found.labels, found.outcome.stored.branches, state.mode_of(mesh))
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
-        self._tell(tickets, registration)
+        self._tell(obj.name, tickets.names, registration)
         return {"FINISHED"}
 
-    def _tell(self, tickets: Tickets, registration: Registration) -> None:
+    def _tell(self, reference: str, names: tuple[str, ...], registration: Registration) -> None:
         confidences = [found.matching.confidence for found in registration.found]
         lowest = min(confidences)
-        name = tickets.names[confidences.index(lowest)]
+        name = names[confidences.index(lowest)]
         n_objects = "1 object" if len(confidences) == 1 else f"{len(confidences)} objects"
-        self.report({"INFO"}, f"Registered {n_objects} to {tickets.reference_name}; least sure: {name}, {lowest:.0%}.")
+        self.report({"INFO"}, f"Registered {n_objects} to {reference}; least sure: {name}, {lowest:.0%}.")
         if lowest <= registered.SURE:
             self.report({"WARNING"}, f"{name} is matched with a confidence of {lowest:.0%} only; look at its parts.")
-        for found in registration.found:
-            for number in tickets.wish.flips.keys() - met_flips(tickets.wish.flips, found.matching.signs).keys():
-                self.report({"WARNING"}, f"Every matching that fits has function {number} with the sign that it had.")
 
 
-def met_flips(flips: Mapping[int, int], signs: np.ndarray) -> dict[int, int]:
-    """Return those of the wanted signs that a matching has."""
-    return {number: sign for number, sign in flips.items() if signs[number - 1] == sign}
+def _object(session_uid: int) -> bpy.types.Object:
+    obj = next((obj for obj in bpy.data.objects if obj.session_uid == session_uid), None)
+    if obj is None:
+        raise Refusal("The object that has the parts was deleted meanwhile.")
+    return obj
 
 
 def _refuse_registered(reference: bpy.types.Object) -> None:
@@ -123,18 +122,17 @@ def _arrays(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[st
 
 def _shown(mesh: bpy.types.Mesh) -> Shown:
     try:
-        summary = state.summarize(mesh)
+        return Shown(state.summarize(mesh).level, state.mode_of(mesh), correcting.load(mesh))
     except Refusal:
-        return Shown(None, 0, state.mode_of(mesh))
-    return Shown(summary.level, summary.n_levels, state.mode_of(mesh))
+        return Shown(None, state.mode_of(mesh), None)
 
 
-def _first_free_label(context: bpy.types.Context, reference: str, targets: list[bpy.types.Object]) -> int:
+def _first_free_label(context: bpy.types.Context, reference: bpy.types.Object, targets: list[bpy.types.Object]) -> int:
     """Return a label above all that others have which are registered to the same reference."""
     labels = [
         label
-        for obj, match in registered.registered_objects(context)
-        if match.reference == reference and obj not in targets
+        for obj, _ in registered.registered_objects(context)
+        if registered.reference_object(obj.data) == reference and obj not in targets
         for label, _, _ in state.summarize(obj.data).parts
     ]
     return 1 + max(labels, default=0)
@@ -148,7 +146,7 @@ def match_of(found: Found, reference: str, wish: Wish, settings: dict[str, Any])
         confidence=float(matching.confidence),
         order=tuple((1 + matching.order[:SHOWN_FUNCTIONS]).tolist()),
         signs=tuple(matching.signs[:SHOWN_FUNCTIONS].tolist()),
-        flips={str(number): sign for number, sign in met_flips(wish.flips, matching.signs).items()},
+        flips={str(number): sign for number, sign in wish.flips.items()},
         alternative=found.alternative,
         n_alternatives=found.n_alternatives,
         mirrored=matching.mirrored,

@@ -1,4 +1,8 @@
-"""What operators have in common that register one object once more; functions are not stored, so both are analyzed."""
+"""What operators have in common that register one object once more.
+
+What was computed before is used as long as Blender runs; functions are not stored in files, so the first time after a
+file was loaded both meshes are analyzed again.
+"""
 
 from collections.abc import Callable
 
@@ -25,7 +29,9 @@ class RegistersAgain(Registers):
         match = registered.read(obj.data)
         if match is None:
             raise Refusal(registered.NOT_REGISTERED)
-        reference = _mesh_object(context, match.reference)
+        reference = registered.reference_object(obj.data) or _mesh_object(context, match.reference)
+        if reference.name not in context.view_layer.objects:
+            raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
         return self.start(context, reference, [obj], self.wish(match), match.settings)
 
     def wish(self, match: registered.Match) -> Wish:

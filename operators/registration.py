@@ -10,11 +10,21 @@ import numpy as np
 from . import engine
 from .analyze import Outcome, outcome_of
 from .exchange import MeshArrays
+from .recent import Recent, key_of
 from .refusals import Refusal
+from .state import StoredAnalysis
 
 # Functions whose signs can be given, and that are shown.
 SHOWN_FUNCTIONS = 8
 Progress = Callable[[float, str], None]
+# Of shapes that are kept: points, 1 kB of memory each. Of matchings: how many.
+RECENT_POINTS = 100_000
+RECENT_MATCHINGS = 32
+# How much of the time of examining a mesh its analysis takes.
+ANALYSIS_SHARE = 0.6
+
+_recent_shapes = Recent(RECENT_POINTS)
+_recent_matchings = Recent(RECENT_MATCHINGS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +66,28 @@ class Wish:
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """The parts that a reference shows: its level, None for the default one, out of how many, and the mode."""
+    """The parts that a reference shows: its level, mode and analysis, with what was corrected; None for the default."""
 
     level: int | None
-    n_levels: int
     mode: str
+    analysis: StoredAnalysis | None
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """An analyzed mesh, ready to be matched.
+
+    Attributes
+    ----------
+    key : str
+        Equal for equal meshes and options.
+    shape : Divisible
+    outcome : Outcome
+    """
+
+    key: str
+    shape: "engine.Divisible"
+    outcome: Outcome
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,14 +97,14 @@ class Found:
     Attributes
     ----------
     outcome : Outcome
-    labels : BranchLabels
-        The parts of the reference on the branches of this mesh.
+    labels : FaceLabels
+        The parts of the reference on the faces of this mesh.
     matching : Matching
     alternative, n_alternatives : int
     """
 
     outcome: Outcome
-    labels: "engine.BranchLabels"
+    labels: "engine.FaceLabels"
     matching: "engine.Matching"
     alternative: int
     n_alternatives: int
@@ -104,69 +131,106 @@ def register_subjects(
     """
     n_steps = 2 * len(targets) + 1
     # All are analyzed first: what cannot be is told before the longer part begins.
-    analyzed = [analyze_subject(target, _step(progress, k, n_steps)) for k, target in enumerate((reference, *targets))]
-    (analysis, outcome), *others = analyzed
-    level = shown.level if analysis.hierarchy.n_levels == shown.n_levels else None
-    segmentation = analysis.segment(level=level, mode=shown.mode)
-    progress((len(targets) + 1) / n_steps, f"Preparing {reference.name}")
-    prepared = engine.prepare_reference(analysis, segmentation)
-    first_free = max(first_free, int(segmentation.parts.id.max()) + 1)
+    own, *others = (_examine(target, _step(progress, k, n_steps)) for k, target in enumerate((reference, *targets)))
+    labels, faces = _division(shown, own)
+    prepared = engine.with_parts(own.shape, faces, labels.parts, labels.level)
+    first_free = max(first_free, int(labels.parts.id.max()) + 1)
     found = []
-    for number, (target, (own, own_outcome)) in enumerate(zip(targets, others, strict=True)):
-        told = f"Registering {target.name}, {number + 1} of {len(targets)}"
-        progress((len(targets) + 1 + number) / n_steps, told)
-        found.append(register_analyzed(prepared, own, own_outcome, wish, first_free))
+    for number, (subject, other) in enumerate(zip(targets, others, strict=True)):
+        told = _naming(_step(progress, len(targets) + 1 + number, n_steps), subject.name)
+        matching = _match(prepared, own.key, other, wish, told)
+        found.append(_register(prepared, other.shape, other.outcome, matching, wish, first_free))
         first_free = max(first_free, int(found[-1].labels.parts.id.max()) + 1)
     progress(1.0, "Done")
-    return Registration(outcome, segmentation.level, tuple(found))
-
-
-def analyze_subject(subject: Subject, progress: Progress) -> tuple["engine.Analysis", Outcome]:
-    """Return the analysis of a mesh and what of it is left for the mesh; a Refusal names the object."""
-    start = time.perf_counter()
-    try:
-        mesh = engine.TriangleMesh(subject.arrays.vertices, subject.arrays.triangles)
-        analysis = engine.analyze(mesh, **subject.options, progress=_naming(progress, subject.name))
-    except engine.Cancelled:
-        raise
-    except engine.EngineError as error:
-        raise Refusal(f"{subject.name}: {error}") from error
-    return analysis, outcome_of(analysis, subject.arrays, subject.options, time.perf_counter() - start)
+    return Registration(own.outcome, labels.level, tuple(found))
 
 
 def register_analyzed(
     reference: "engine.Reference", target: "engine.Analysis", outcome: Outcome, wish: Wish, first_free: int
 ) -> Found:
     """Return an analyzed mesh divided into the parts of the reference; its own are numbered from ``first_free``."""
-    shape = engine.spectral_shape(target.matching_basis)
-    best = engine.match_surfaces(
-        reference.surface, target.surface, reference.shape, shape, flips=wish.flips, mirrored=wish.mirrored
-    )
+    shape = engine.divisible(target, engine.matching_shape(target), outcome.polygon_of_triangle)
+    matching = engine.match_divisible(reference, shape, flips=wish.flips, mirrored=wish.mirrored)
+    return _register(reference, shape, outcome, matching, wish, first_free)
+
+
+def _examine(subject: Subject, progress: Progress) -> Examined:
+    arrays = subject.arrays
+    key = key_of([arrays.vertices, arrays.triangles, arrays.polygon_of_triangle, *_flat(subject.options)])
+    known = _recent_shapes.get(key)
+    if known is not None:
+        return known
+    told = _naming(progress, subject.name)
+    start = time.perf_counter()
+    try:
+        mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
+        analysis = engine.analyze(mesh, **subject.options, progress=_part(told, 0, ANALYSIS_SHARE))
+        outcome = outcome_of(analysis, arrays, subject.options, time.perf_counter() - start)
+        points = engine.matching_shape(analysis, _part(told, ANALYSIS_SHARE, 1))
+    except engine.Cancelled:
+        raise
+    except engine.EngineError as error:
+        raise Refusal(f"{subject.name}: {error}") from error
+    examined = Examined(key, engine.divisible(analysis, points, arrays.polygon_of_triangle), outcome)
+    _recent_shapes.put(key, examined, len(points.positions))
+    return examined
+
+
+def _flat(options: Mapping[str, Any]) -> list[Any]:
+    return [item for pair in sorted(options.items()) for item in pair]
+
+
+def _division(shown: Shown, reference: Examined) -> tuple["engine.BranchLabels", np.ndarray]:
+    """Return the parts that a reference shows, with what was corrected by hand, and the part of each face."""
+    hierarchy, branches = reference.shape.hierarchy, reference.shape.branches
+    level = corrections = None
+    if shown.analysis is not None and _has_trees(shown.analysis.hierarchy, hierarchy):
+        level, branches, corrections = shown.level, shown.analysis.branches, shown.analysis.corrections
+    labels = engine.label_branches(hierarchy, branches, level=level, mode=shown.mode, corrections=corrections)
+    return labels, labels.of_faces(branches).astype(np.int64)
+
+
+def _has_trees(stored: "engine.Hierarchy", hierarchy: "engine.Hierarchy") -> bool:
+    trees = [[tree.extremum.tolist() for tree in one.trees] for one in (stored, hierarchy)]
+    return trees[0] == trees[1] and stored.n_levels == hierarchy.n_levels
+
+
+def _match(
+    reference: "engine.Reference", reference_key: str, target: Examined, wish: Wish, progress: Progress
+) -> "engine.Matching":
+    key = key_of([reference_key, target.key, sorted(wish.flips.items()), wish.mirrored])
+    known = _recent_matchings.get(key)
+    if known is None:
+        known = engine.match_divisible(
+            reference, target.shape, flips=wish.flips, mirrored=wish.mirrored, progress=_part(progress, 0, 0.9)
+        )
+        _recent_matchings.put(key, known, 1)
+    progress(0.9, "Carrying the parts over")
+    return known
+
+
+def _register(
+    reference: "engine.Reference",
+    target: "engine.Divisible",
+    outcome: Outcome,
+    best: "engine.Matching",
+    wish: Wish,
+    first_free: int,
+) -> Found:
     matchings = (best, *best.alternatives)
     alternative = wish.alternative % len(matchings)
-    matching = matchings[alternative]
-    source = reference.shape.mirrored() if matching.mirrored else reference.shape
-    landing = engine.source_points(source, shape, matching)
-    cuts, hierarchy, _, level = engine.register_cuts(reference.parts, target, shape, landing)
-    cuts = _with_own_labels(cuts, int(reference.parts.segmentation.parts.id.max()), first_free)
-    labels = engine.label_behind(cuts, hierarchy, outcome.stored.branches, level)
-    return Found(outcome, labels, matching, alternative, len(matchings) - 1)
+    labels = engine.label_matched(reference, target, matchings[alternative], first_free)
+    return Found(outcome, labels, matchings[alternative], alternative, len(matchings) - 1)
 
 
-def _with_own_labels(cuts: list[np.ndarray], highest_shared: int, first_free: int) -> list[np.ndarray]:
-    """Renumber the parts without a partner, so that no other mesh has their labels."""
-    own = np.unique(np.concatenate(cuts))
-    own = own[own > highest_shared]
-    return [np.where(cut > highest_shared, first_free + np.searchsorted(own, cut), cut) for cut in cuts]
+def _part(progress: Progress, start: float, stop: float) -> Progress:
+    """Return a callback whose 0..1 is ``start``..``stop``."""
+    return lambda fraction, text: progress(start + (stop - start) * fraction, text)
 
 
 def _step(progress: Progress, number: int, n_steps: int) -> Progress:
     """Return a callback whose 0..1 is one of some equal steps."""
-
-    def report(fraction: float, text: str) -> None:
-        progress((number + fraction) / n_steps, text)
-
-    return report
+    return _part(progress, number / n_steps, (number + 1) / n_steps)
 
 
 def _naming(progress: Progress, name: str) -> Progress:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Bools, Floats, Ints
+from ..mesh import Floats, Ints
+from ..progress import Progress, section, silent
 from .moments import Moments, agreement, agreement_gradient
 from .spectral_shape import SpectralShape
 
@@ -22,6 +23,7 @@ MIXING = 0.35
 # How much of the previous round stays in the next one; without it the ascent may swing to and fro.
 INERTIA = 0.3
 POLISHING_ROUNDS = 20
+SEARCHING = "Searching order and signs"
 # Two hypotheses are one if their matrices agree on this share of the functions.
 SAME_HYPOTHESIS = 0.95
 
@@ -98,7 +100,11 @@ def spectrum_of(shape: SpectralShape) -> Spectrum:
 
 
 def find_hypotheses(
-    source: Spectrum, target: Spectrum, effort: Effort, signs: Mapping[int, int] | None = None
+    source: Spectrum,
+    target: Spectrum,
+    effort: Effort,
+    signs: Mapping[int, int] | None = None,
+    progress: Progress = silent,
 ) -> Hypotheses:
     """Return hypotheses on the functions of the last level, best first.
 
@@ -107,16 +113,20 @@ def find_hypotheses(
     source, target : Spectrum
     effort : Effort
     signs : mapping of int to +1 or -1, optional
-        Signs that are given, by the source's function (from 0).
+        Signs that are given, by the source's function (from 0); the refinement may still leave them.
+    progress : Progress, optional
+        Told several times a second; may raise `Cancelled`.
     """
     signs = signs or {}
     n_available = min(len(source.values), len(target.values))
     levels = sorted({min(level, n_available) for level in effort.levels})
-    assignments = _beam(_Scene(source, target, levels[0]), effort.beam_width, signs)
-    seeds = _polish(_completed(*assignments, levels[0]), source, target)
+    steps = [section(progress, k / len(levels), (k + 1) / len(levels)) for k in range(len(levels))]
+    searching, polishing = section(steps[0], 0, 0.5), section(steps[0], 0.5, 1)
+    assignments = _beam(_Scene(source, target, levels[0]), effort.beam_width, signs, progress=searching)
+    seeds = _polish(_completed(*assignments, levels[0]), source, target, polishing)
     found = seeds.take(_distinct(seeds.maps, np.arange(len(seeds)), effort.n_seeds))
-    for level in levels[1:]:
-        found = _extend(found, _Scene(source, target, level), effort, signs)
+    for level, step in zip(levels[1:], steps[1:], strict=True):
+        found = _extend(found, _Scene(source, target, level), effort, signs, step)
     return found.take(np.argsort(-found.total, kind="stable"))
 
 
@@ -131,7 +141,13 @@ class _Scene:
         self.target_moments = target.moments.damped(self.target_values)
 
 
-def _beam(scene: _Scene, width: int, signs: Mapping[int, int], known: Floats | None = None) -> tuple[Ints, Floats]:
+def _beam(
+    scene: _Scene,
+    width: int,
+    signs: Mapping[int, int],
+    known: Floats | None = None,
+    progress: Progress = silent,
+) -> tuple[Ints, Floats]:
     """Return (b, K) places and signs of the best signed assignments, best first.
 
     ``known`` is a map of the first functions that is not to be touched any more.
@@ -144,6 +160,7 @@ def _beam(scene: _Scene, width: int, signs: Mapping[int, int], known: Floats | N
         moments = moments.rotated(rotation)
     places, sign = np.arange(n_known)[None], np.ones((1, n_known))
     for function in range(n_known, scene.level):
+        progress((function - n_known) / (scene.level - n_known), SEARCHING)
         places, sign = _branch(places, sign, len(scene.target_values), signs.get(function))
         order = np.argsort(-_score(places, sign, scene, moments), kind="stable")[:width]
         places, sign = places[order], sign[order]
@@ -198,13 +215,14 @@ def nearest_orthogonal(matrices: Floats) -> Floats:
     return left @ right
 
 
-def _polish(maps: Floats, source: Spectrum, target: Spectrum) -> Hypotheses:
+def _polish(maps: Floats, source: Spectrum, target: Spectrum, progress: Progress) -> Hypotheses:
     """Turn maps uphill on the agreement of the moments, mixing functions of similar eigenvalues only."""
     level = maps.shape[-1]
     here, there = source.moments.damped(source.values[:level]), target.moments.damped(target.values[:level])
     ratio = np.log(source.values[:level])[None, :] - np.log(target.values[:level])[:, None]
     weight = np.exp(-((ratio / MIXING) ** 2))
-    for _ in range(POLISHING_ROUNDS):
+    for done in range(POLISHING_ROUNDS):
+        progress(done / POLISHING_ROUNDS, SEARCHING)
         gradient = agreement_gradient(maps, here.symmetric, there.symmetric)
         gradient += agreement_gradient(maps, here.alternating, there.alternating)
         maps = nearest_orthogonal((gradient + INERTIA / np.sqrt(level) * maps) * weight)
@@ -224,17 +242,20 @@ def _distinct(maps: Floats, order: Ints, n_wanted: int) -> Ints:
     return np.array(kept, dtype=np.int64)
 
 
-def _extend(found: Hypotheses, scene: _Scene, effort: Effort, signs: Mapping[int, int]) -> Hypotheses:
+def _extend(
+    found: Hypotheses, scene: _Scene, effort: Effort, signs: Mapping[int, int], progress: Progress
+) -> Hypotheses:
     """Return the best continuations of hypotheses to the scene's level."""
     starts, parent = [], []
     for number, known in enumerate(found.maps):
+        progress(0.5 * number / len(found), SEARCHING)
         places, sign = _beam(scene, 16, signs, known)
         wider = np.eye(scene.level)
         wider[: len(known), : len(known)] = known
         n_tried = 2 * effort.n_branches
         starts.append(_completed(places[:n_tried], sign[:n_tried], scene.level) @ wider)
         parent.append(np.full(len(starts[-1]), number))
-    polished = _polish(np.concatenate(starts), scene.source, scene.target)
+    polished = _polish(np.concatenate(starts), scene.source, scene.target, section(progress, 0.5, 1))
     chosen = _limit_per_parent(polished, np.concatenate(parent), effort.n_branches)
     return polished.take(chosen[: effort.n_kept])
 
@@ -244,10 +265,3 @@ def _limit_per_parent(polished: Hypotheses, parent: Ints, n_branches: int) -> In
     order = _distinct(polished.maps, np.arange(len(polished)), len(polished))
     chosen = np.concatenate([order[parent[order] == number][:n_branches] for number in np.unique(parent)])
     return chosen[np.argsort(-polished.total[chosen], kind="stable")]
-
-
-def agrees_with_signs(maps: Floats, signs: Mapping[int, int]) -> Bools:
-    """(h,) whether the largest entry of each given source function has the given sign."""
-    largest = np.abs(maps).argmax(axis=1)
-    rounded = np.sign(np.take_along_axis(maps, largest[:, None, :], axis=1)[:, 0])
-    return np.all([rounded[:, function] == sign for function, sign in signs.items()] or [[True] * len(maps)], axis=0)

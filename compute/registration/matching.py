@@ -5,16 +5,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from ..analysis import Analysis
 from ..errors import RegistrationError
 from ..mesh import Floats, Ints
+from ..progress import Progress, rising, section, silent
 from ..surface import Surface
-from .hypotheses import Effort, agrees_with_signs, find_hypotheses, spectrum_of
+from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .selection import Candidate, Judge, confidence_of, distinct_candidates, fit_of
-from .spectral_shape import SpectralShape, spectral_shape
-from .zoomout import MATCHING_SIZES
+from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
+from .zoomout import MATCHING_SIZES, rounded
 
 # How wide the search is; the next effort is made only where the ones before leave doubt.
 EFFORTS = (
@@ -61,13 +61,12 @@ class Matching:
     @cached_property
     def order(self) -> Ints:
         """(ks,) the target's function (from 0) that each of the source's functions mostly is."""
-        return linear_sum_assignment(-np.abs(self.map.T))[1]
+        return rounded(self.map)[0]
 
     @cached_property
     def signs(self) -> Ints:
         """(ks,) +1 or -1, the sign with which it is that function."""
-        entries = self.map[self.order, np.arange(len(self.order))]
-        return np.where(entries < 0, -1, 1)
+        return rounded(self.map)[1]
 
     @cached_property
     def purity(self) -> Floats:
@@ -76,7 +75,12 @@ class Matching:
 
 
 def match(
-    source: Analysis, target: Analysis, *, flips: Mapping[int, int] | None = None, mirrored: bool = False
+    source: Analysis,
+    target: Analysis,
+    *,
+    flips: Mapping[int, int] | None = None,
+    mirrored: bool = False,
+    progress: Progress | None = None,
 ) -> Matching:
     """Match the eigenfunctions of two shapes.
 
@@ -84,17 +88,30 @@ def match(
     ----------
     source, target : Analysis
     flips : mapping of int to +1 or -1, optional
-        The sign that a function of the source (from 1) is to have; all others follow.
+        The sign that a function of the source (from 1) is to have, whatever fits better; all others follow. Functions
+        point where those of ``eigenbasis`` do.
     mirrored : bool
         Match the mirror image of the source: a left hand with a right one.
+    progress : callable, optional
+        ``progress(fraction, text)``; may raise `Cancelled`.
 
     Raises
     ------
     RegistrationError
         If a sign is given for a function that has none, or is not +1 or -1.
     """
-    here, there = spectral_shape(source.matching_basis), spectral_shape(target.matching_basis)
-    return match_surfaces(source.surface, target.surface, here, there, flips=flips, mirrored=mirrored)
+    progress = rising(progress or silent)
+    here = matching_shape(source, section(progress, 0, 0.3))
+    there = matching_shape(target, section(progress, 0.3, 0.6))
+    rest = section(progress, 0.6, 1)
+    return match_surfaces(source.surface, target.surface, here, there, flips=flips, mirrored=mirrored, progress=rest)
+
+
+def matching_shape(analysis: Analysis, progress: Progress = silent) -> SpectralShape:
+    """Return a shape ready to be matched, with functions that are computed now if they were not before."""
+    shape = spectral_shape(analysis.find_matching_basis(section(progress, 0, 0.8)))
+    prepare_shape(shape, section(progress, 0.8, 1))
+    return shape
 
 
 def match_surfaces(
@@ -105,12 +122,13 @@ def match_surfaces(
     *,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
+    progress: Progress = silent,
 ) -> Matching:
     """Match two shapes as `match` does, where what it makes of them first is at hand."""
     signs = _checked_signs(flips or {})
     if not signs and not mirrored and share_topology(source, target):
         return match_by_number(source_shape, target_shape)
-    return match_shapes(source_shape, target_shape, signs, mirrored=mirrored)
+    return match_shapes(source_shape, target_shape, signs, mirrored=mirrored, progress=progress)
 
 
 def share_topology(source: Surface, target: Surface) -> bool:
@@ -127,10 +145,15 @@ def match_by_number(source: SpectralShape, target: SpectralShape) -> Matching:
 
 
 def match_shapes(
-    source: SpectralShape, target: SpectralShape, signs: Mapping[int, int] | None = None, *, mirrored: bool = False
+    source: SpectralShape,
+    target: SpectralShape,
+    signs: Mapping[int, int] | None = None,
+    *,
+    mirrored: bool = False,
+    progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
-    candidates = _ranked_candidates(source.mirrored() if mirrored else source, target, signs or {})
+    candidates = _ranked_candidates(source.mirrored() if mirrored else source, target, signs or {}, progress)
     best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
     confidence = confidence_of(best, candidates)
     # What the best one leaves over is for the alternatives, if they fit.
@@ -138,25 +161,28 @@ def match_shapes(
     return replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
 
 
-def _ranked_candidates(source: SpectralShape, target: SpectralShape, signs: Mapping[int, int]) -> list[Candidate]:
+def _ranked_candidates(
+    source: SpectralShape, target: SpectralShape, signs: Mapping[int, int], progress: Progress
+) -> list[Candidate]:
     """Return judged hypotheses, best first; the search is widened until the best of them is sure."""
     n_available = min(source.n_functions, target.n_functions)
-    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES], signs)
     spectra = spectrum_of(source), spectrum_of(target)
+    # A wider search finds what fits better than the signs that are given, not what fits them better.
+    efforts = EFFORTS[:1] if signs else EFFORTS
     ranked: list[Candidate] = []
-    for effort in EFFORTS:
-        found = find_hypotheses(*spectra, effort, signs)
-        judged = judge.judge(found.take(np.arange(min(len(found), effort.n_refined))))
-        ranked = sorted(ranked + judged, key=lambda candidate: _rank(candidate, signs))
+    for number, effort in enumerate(efforts):
+        searching, refining = _halves(section(progress, number / len(efforts), (number + 1) / len(efforts)))
+        found = find_hypotheses(*spectra, effort, signs, searching)
+        judged = judge.judge(found.take(np.arange(min(len(found), effort.n_refined))), refining)
+        ranked = sorted(ranked + judged, key=lambda candidate: candidate.rank)
         if confidence_of(ranked[0], ranked) >= SURE:
             break
     return ranked
 
 
-def _rank(candidate: Candidate, signs: Mapping[int, int]) -> tuple[bool, bool, float]:
-    """Return what candidates are sorted by: those that break a given sign last, then torn ones, then by cost."""
-    disobeys = not agrees_with_signs(candidate.functional_map[None, 1:, 1:], signs)[0]
-    return (disobeys, *candidate.rank)
+def _halves(progress: Progress) -> tuple[Progress, Progress]:
+    return section(progress, 0, 0.5), section(progress, 0.5, 1)
 
 
 def _matching_of(candidate: Candidate, confidence: float, mirrored: bool) -> Matching:

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..analysis import Analysis
 from ..mesh import Bools, Floats, Ints
 from ..segmentation.arc_tree import ArcTree
-from ..segmentation.branches import Branches
 from ..segmentation.hierarchy import Hierarchy
-from ..segmentation.parts import BODY, Segmentation, cut_arcs, label_behind
-from .spectral_shape import SpectralShape
+from ..segmentation.parts import BODY, Parts, cut_arcs
+from .carried_labels import Divisible, GivenParts, given_parts
 
 # A part and its partner share at least this much of what they cover together.
 LEAST_OVERLAP = 0.3
@@ -23,9 +21,11 @@ class ReferenceParts:
 
     Attributes
     ----------
-    segmentation : Segmentation
-    id : (P,) int64
-        Labels of the parts.
+    given : GivenParts
+    table : Parts
+        Of the reference, the body included.
+    level : int
+        Of the reference.
     shares : (n, P) sparse
         How much of the area around each point of the reference each part covers, what grows out of it included.
     is_inside : (P, P) bool
@@ -34,24 +34,26 @@ class ReferenceParts:
         Of the pairs that the reference's level keeps, as a fraction of the field's range.
     """
 
-    segmentation: Segmentation
-    id: Ints
+    given: GivenParts
+    table: Parts
+    level: int
     shares: csr_array
     is_inside: Bools
     least_persistence: float
 
 
-def reference_parts(segmentation: Segmentation, hierarchy: Hierarchy, shape: SpectralShape) -> ReferenceParts:
-    """Return the parts of a segmentation in the form that they are looked for on other shapes."""
-    parts = segmentation.parts
-    ids, parents = parts.id[parts.id != BODY], parts.parent[parts.id != BODY]
-    is_inside = _nesting(ids, parents)
-    own = shape.shares_at_points(segmentation.labels.astype(np.int64), int(segmentation.labels.max()) + 1)[:, ids]
-    whole = own @ csr_array((is_inside | np.eye(len(ids), dtype=bool)).astype(float))
-    kept = hierarchy.persistence[len(hierarchy.persistence) - segmentation.level :]
-    least = float(kept.min(initial=hierarchy.value_range) / max(hierarchy.value_range, np.finfo(float).tiny))
-    around = np.maximum(shape.point_areas, np.finfo(float).tiny)
-    return ReferenceParts(segmentation, ids, csr_array(whole.multiply(1 / around[:, None])), is_inside, least)
+def reference_parts(labels: Ints, parts: Parts, level: int, reference: Divisible) -> ReferenceParts:
+    """Return the parts of a division of the reference's faces in the form that they are looked for on other shapes."""
+    given = given_parts(labels, parts, reference)
+    is_inside = _nesting(given.id, given.parent)
+    whole = given.shares[:, 1:] @ (is_inside | np.eye(len(given.id), dtype=bool)).astype(float)
+    least = _least_persistence(reference.hierarchy, level)
+    return ReferenceParts(given, parts, level, csr_array(whole), is_inside, least)
+
+
+def _least_persistence(hierarchy: Hierarchy, level: int) -> float:
+    kept = hierarchy.persistence[len(hierarchy.persistence) - level :]
+    return float(kept.min(initial=hierarchy.value_range) / max(hierarchy.value_range, np.finfo(float).tiny))
 
 
 def _nesting(ids: Ints, parents: Ints) -> Bools:
@@ -61,8 +63,8 @@ def _nesting(ids: Ints, parents: Ints) -> Bools:
     return is_inside
 
 
-def register_parts(reference: ReferenceParts, target: Analysis, shape: SpectralShape, landing: Ints) -> Segmentation:
-    """Divide a target into the parts of a reference.
+def partner_cuts(reference: ReferenceParts, target: Divisible, landing: Ints) -> tuple[list[Ints], int]:
+    """Return for each of the target's trees the part that is cut off at each arc, 0 where none is, and its level.
 
     For every part of the reference the subtree of the target's merge trees is taken that covers the same points best,
     at whatever level it stands there. What else the target has that is as persistent as the reference's parts gets
@@ -71,38 +73,32 @@ def register_parts(reference: ReferenceParts, target: Analysis, shape: SpectralS
     Parameters
     ----------
     reference : ReferenceParts
-    target : Analysis
-    shape : SpectralShape
-        Of the target.
+    target : Divisible
     landing : (n,) int64
-        The reference's point that each of the shape's points corresponds to.
+        The reference's point that each of the target's points corresponds to.
     """
-    branches = target.branches()
-    labels = label_behind(*register_cuts(reference, target, shape, landing))
-    of_faces = labels.of_faces(branches)
-    return Segmentation(of_faces, labels.parts, labels.level)
-
-
-def register_cuts(
-    reference: ReferenceParts, target: Analysis, shape: SpectralShape, landing: Ints
-) -> tuple[list[Ints], Hierarchy, tuple[Branches, ...], int]:
-    """Return what `label_behind` takes to divide a target, or its polygons, into the parts of a reference."""
-    hierarchy, branches = target.hierarchy, target.branches()
+    hierarchy, branches, shape = target.hierarchy, target.branches, target.shape
     level = hierarchy.level_of_threshold(reference.least_persistence)
     carried = reference.shares[landing]
-    covers = [
-        _cover(tree, shape.shares_at_points(pieces.arc[pieces.of_face], len(tree.parent)), carried)
-        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
-    ]
-    partners = _partners(reference, covers)
-    first_free = int(reference.segmentation.parts.id.max()) + 1
+    covers = []
+    for tree, pieces in zip(hierarchy.trees, branches, strict=True):
+        arc_of_triangle = pieces.arc[pieces.of_face][target.face]
+        covers.append(_cover(tree, shape.shares_at_points(arc_of_triangle, len(tree.parent)), carried))
+    first_free = 1 + reference.given.highest
     cuts = [np.zeros(len(cover.overlap), dtype=np.int64) for cover in covers]
-    for part, tree, arc in partners:
-        cuts[tree][arc] = reference.id[part]
-    for tree, own in enumerate(cut_arcs(hierarchy, branches, level)):
-        is_free = _apart_from(np.flatnonzero(cuts[tree]), covers[tree]) & (own != BODY)
-        cuts[tree][is_free] = first_free + own[is_free]
-    return cuts, hierarchy, branches, level
+    for part, tree_number, arc in _partners(reference, covers):
+        cuts[tree_number][arc] = reference.given.id[part]
+    for number, own in enumerate(cut_arcs(hierarchy, branches, level)):
+        is_free = _apart_from(np.flatnonzero(cuts[number]), covers[number]) & (own != BODY)
+        cuts[number][is_free] = first_free + own[is_free]
+    return cuts, level
+
+
+def with_first_free(cuts: list[Ints], highest_shared: int, first_free: int) -> list[Ints]:
+    """Renumber the parts without a partner from a number on, so that no other shape has their labels."""
+    own = np.unique(np.concatenate(cuts))
+    own = own[own > highest_shared]
+    return [np.where(cut > highest_shared, first_free + np.searchsorted(own, cut), cut) for cut in cuts]
 
 
 @dataclass(frozen=True, eq=False)

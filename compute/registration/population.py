@@ -1,7 +1,7 @@
 """Registration of any number of shapes at once, through one reference."""
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -10,13 +10,15 @@ import numpy as np
 from ..analysis import Analysis
 from ..errors import RegistrationError
 from ..mesh import Ints
-from ..progress import Progress, silent
-from ..segmentation.parts import Segmentation
-from ..surface import Surface
+from ..progress import Progress, rising, section, silent
+from ..segmentation.parts import Parts, Segmentation
+from .carried_labels import Divisible, FaceLabels, carry_labels, divisible
 from .dense import source_points
-from .matching import Matching, match_surfaces
-from .part_matching import ReferenceParts, reference_parts, register_parts
-from .spectral_shape import SpectralShape, spectral_shape
+from .matching import Matching, match_surfaces, matching_shape
+from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
+
+# Seconds between looks whether shapes in an executor are ready, and whether the user has cancelled.
+INTERVAL = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +27,11 @@ class Reference:
 
     Attributes
     ----------
-    surface : Surface
-    shape : SpectralShape
+    shape : Divisible
     parts : ReferenceParts
     """
 
-    surface: Surface
-    shape: SpectralShape
+    shape: Divisible
     parts: ReferenceParts
 
 
@@ -71,7 +71,7 @@ def register(
     executor : concurrent.futures.Executor, optional
         Runs the pairs: threads, processes or a cluster that offers this interface.
     progress : Progress, optional
-        Told after each pair; may raise `Cancelled`.
+        Told several times a second; may raise `Cancelled`. Pairs that run in an executor by then are finished there.
 
     Returns
     -------
@@ -88,31 +88,66 @@ def register(
     """
     if not 0 <= reference < len(analyses):
         raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
-    prepared = prepare_reference(analyses[reference], analyses[reference].segment(level=level))
+    progress = rising(progress or silent)
+    progress(0.0, "Preparing the reference")
+    own = analyses[reference].segment(level=level)
+    prepared = prepare_reference(analyses[reference], own)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
-    segmentations = [result.segmentation for result in _register_all(prepared, others, executor, progress or silent)]
-    segmentations.insert(reference, prepared.parts.segmentation)
+    run = _run_here if executor is None else partial(_run_elsewhere, executor)
+    segmentations = [result.segmentation for result in run(prepared, others, progress)]
+    segmentations.insert(reference, own)
     return with_own_labels(segmentations, reference)
 
 
 def prepare_reference(analysis: Analysis, segmentation: Segmentation) -> Reference:
     """Return a shape with its parts in the form that others are registered to."""
-    shape = spectral_shape(analysis.matching_basis)
-    return Reference(analysis.surface, shape, reference_parts(segmentation, analysis.hierarchy, shape))
+    shape = divisible(analysis, matching_shape(analysis))
+    return with_parts(shape, segmentation.labels.astype(np.int64), segmentation.parts, segmentation.level)
 
 
-def register_one(reference: Reference, target: Analysis) -> Registered:
+def with_parts(shape: Divisible, labels: Ints, parts: Parts, level: int) -> Reference:
+    """Return a shape with a division of its faces in the form that others are registered to."""
+    return Reference(shape, reference_parts(labels, parts, level, shape))
+
+
+def register_one(reference: Reference, target: Analysis, progress: Progress = silent) -> Registered:
     """Match one shape with the reference and divide it into the same parts."""
-    shape = spectral_shape(target.matching_basis)
-    matching = match_surfaces(reference.surface, target.surface, reference.shape, shape)
-    return register_matched(reference, target, shape, matching)
+    shape = divisible(target, matching_shape(target, section(progress, 0, 0.4)))
+    matching = match_divisible(reference, shape, progress=section(progress, 0.4, 0.9))
+    progress(0.9, "Carrying the parts over")
+    labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest)
+    return Registered(Segmentation(labels.faces, labels.parts, labels.level), matching)
 
 
-def register_matched(reference: Reference, target: Analysis, shape: SpectralShape, matching: Matching) -> Registered:
-    """Divide a shape into the parts of the reference by a matching that is known."""
-    source = reference.shape.mirrored() if matching.mirrored else reference.shape
-    landing = source_points(source, shape, matching)
-    return Registered(register_parts(reference.parts, target, shape, landing), matching)
+def match_divisible(
+    reference: Reference,
+    target: Divisible,
+    *,
+    flips: Mapping[int, int] | None = None,
+    mirrored: bool = False,
+    progress: Progress = silent,
+) -> Matching:
+    """Match the reference (source) with a target, as `match` does."""
+    here, there = reference.shape, target
+    return match_surfaces(
+        here.surface, there.surface, here.shape, there.shape, flips=flips, mirrored=mirrored, progress=progress
+    )
+
+
+def label_matched(reference: Reference, target: Divisible, matching: Matching, first_free: int) -> FaceLabels:
+    """Divide a shape into the parts of the reference by a matching that is known.
+
+    Parameters
+    ----------
+    first_free : int
+        The least label for parts without a partner on the reference.
+    """
+    source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
+    landing = source_points(source, target.shape, matching)
+    cuts, level = partner_cuts(reference.parts, target, landing)
+    cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
+    same_faces = matching.same_topology and np.array_equal(reference.shape.face, target.face)
+    return carry_labels(reference.parts.given, target, None if same_faces else landing, cuts, level)
 
 
 def with_own_labels(segmentations: Sequence[Segmentation], reference: int) -> list[Segmentation]:
@@ -135,11 +170,26 @@ def _renumbered(segmentation: Segmentation, own: Ints, first_free: int) -> Segme
     return replace(segmentation, labels=table[segmentation.labels].astype(np.int32), parts=new_parts)
 
 
-def _register_all(
-    reference: Reference, targets: Sequence[Analysis], executor: Executor | None, progress: Progress
+def _run_here(reference: Reference, targets: Sequence[Analysis], progress: Progress) -> Iterator[Registered]:
+    """Yield the registered shapes one after the other."""
+    for number, target in enumerate(targets):
+        told = section(progress, number / len(targets), (number + 1) / len(targets))
+        yield register_one(reference, target, told)
+        progress((number + 1) / len(targets), f"Registered {number + 1} of {len(targets)} shapes")
+
+
+def _run_elsewhere(
+    executor: Executor, reference: Reference, targets: Sequence[Analysis], progress: Progress
 ) -> Iterator[Registered]:
-    """Yield the registered shapes in their order, telling how far it is."""
-    run = map if executor is None else executor.map
-    for number, result in enumerate(run(partial(register_one, reference), targets), start=1):
-        progress(number / len(targets), f"Registered {number} of {len(targets)} shapes")
-        yield result
+    """Yield the registered shapes in their order; those that have not begun are given up where this is cancelled."""
+    futures = [executor.submit(register_one, reference, target) for target in targets]
+    try:
+        open_futures: set[Future[Registered]] = set(futures)
+        while open_futures:
+            _, open_futures = wait(open_futures, timeout=INTERVAL)
+            n_done = len(futures) - len(open_futures)
+            progress(n_done / len(futures), f"Registered {n_done} of {len(futures)} shapes")
+        yield from (future.result() for future in futures)
+    finally:
+        for future in futures:
+            future.cancel()

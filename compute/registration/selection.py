@@ -1,6 +1,6 @@
 """Which hypothesis is right: every one is refined to a map that can be judged as geometry."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..mesh import Floats, Ints
+from ..progress import Progress, silent
 from .hypotheses import Hypotheses, nearest_orthogonal, spectrum_of
 from .moments import agreement
 from .spectral_shape import SpectralShape
@@ -108,10 +109,25 @@ def _difference(one: Candidate, other: Candidate) -> float:
 
 
 class Judge:
-    """Refines and judges hypotheses for one pair of shapes; keeps what all of them need."""
+    """Refines and judges hypotheses for one pair of shapes; keeps what all of them need.
 
-    def __init__(self, source: SpectralShape, target: SpectralShape, sizes: Sequence[int]) -> None:
-        self._source, self._target, self._sizes = source, target, sizes
+    Parameters
+    ----------
+    source, target : SpectralShape
+    sizes : sequence of int
+        Of the functional maps, rising.
+    signs : mapping of int to +1 or -1, optional
+        Signs that are kept whatever fits better, by the source's function from 0.
+    """
+
+    def __init__(
+        self,
+        source: SpectralShape,
+        target: SpectralShape,
+        sizes: Sequence[int],
+        signs: Mapping[int, int] | None = None,
+    ) -> None:
+        self._source, self._target, self._sizes, self._signs = source, target, sizes, signs
         self._source_samples = sample_functions(source.functions[source.samples], ())
         self._target_samples = sample_functions(target.functions[target.samples], sizes)
         self._spectra = spectrum_of(source), spectrum_of(target)
@@ -120,13 +136,17 @@ class Judge:
         self._neighbours = _neighbours(target)
         self._normals = source.project(source.normals)[:last]
 
-    def judge(self, found: Hypotheses) -> list[Candidate]:
-        """Return a candidate for each hypothesis, in their order."""
-        return [self._candidate(start) for start in found.maps]
+    def judge(self, found: Hypotheses, progress: Progress = silent) -> list[Candidate]:
+        """Return a candidate for each hypothesis, in their order; the progress callback may raise `Cancelled`."""
+        candidates = []
+        for number, start in enumerate(found.maps):
+            progress(number / len(found), "Refining what was found")
+            candidates.append(self._candidate(start))
+        return candidates
 
     def _candidate(self, start: Floats) -> Candidate:
         here, there = self._source_samples, self._target_samples
-        grown = zoom_out(with_constant(start), here, there, self._sizes)
+        grown = zoom_out(with_constant(start), here, there, self._sizes, self._signs)
         nearest = nearest_points(grown, here.functions, there.functions)
         return Candidate(
             start, grown, nearest, *self._moments(grown, len(start)),

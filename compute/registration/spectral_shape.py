@@ -12,12 +12,15 @@ from ..fem.space import function_space
 from ..fields import refined_net
 from ..mesh import Floats, Ints, TriangleMesh
 from ..orientation import reversed_where, wrongly_wound
+from ..progress import Progress
 from .moments import Moments, moments_of, point_areas
 
 # Points at which functions of two shapes are compared.
 N_SAMPLES = 1000
 # Functions that moments are taken of: the last level of matching and the places a function may move by.
 MOMENT_FUNCTIONS = 18
+# What matching asks of a shape, and is kept there.
+KEPT = ("samples", "moments", "normals", "curvature")
 # Time of the smoothing of curvature, in units of the area: details below 2 % of the shape's size do not count.
 CURVATURE_TIME = 5e-4
 
@@ -105,10 +108,10 @@ class SpectralShape:
 
         Parameters
         ----------
-        labels : (T,) int
-            Label of each triangle of the input.
+        labels : (m,) int
+            Label of each of the shape's triangles.
         """
-        columns = np.repeat(labels[self.input_triangle], 3)
+        columns = np.repeat(labels, 3)
         entries = (np.repeat(self.areas / 3, 3), (self.triangles.ravel(), columns))
         return coo_array(entries, shape=(len(self.positions), n_labels)).tocsr()
 
@@ -132,6 +135,13 @@ def spectral_shape(basis: Eigenbasis) -> SpectralShape:
         node,
         basis.surface.input_triangle[net.triangle_of_surface],
     )
+
+
+def prepare_shape(shape: SpectralShape, progress: Progress) -> None:
+    """Compute what is kept on a shape, telling in between; the callback may raise `Cancelled`."""
+    for number, name in enumerate(KEPT):
+        progress(number / len(KEPT), "Measuring the functions")
+        getattr(shape, name)
 
 
 def farthest_points(positions: Floats, n_points: int) -> Ints:

@@ -1,9 +1,10 @@
 """ZoomOut: a map of points and a map of functions in turn, with more functions each time."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
 from ..mesh import Floats, Ints
 
@@ -33,7 +34,13 @@ def sample_functions(functions: Floats, sizes: Sequence[int]) -> SampledFunction
     return SampledFunctions(functions, {size: np.linalg.pinv(functions[:, :size]) for size in sorted(set(sizes))})
 
 
-def zoom_out(start: Floats, source: SampledFunctions, target: SampledFunctions, sizes: Sequence[int]) -> Floats:
+def zoom_out(
+    start: Floats,
+    source: SampledFunctions,
+    target: SampledFunctions,
+    sizes: Sequence[int],
+    signs: Mapping[int, int] | None = None,
+) -> Floats:
     """Return a functional map grown to the last of the sizes.
 
     Parameters
@@ -43,6 +50,8 @@ def zoom_out(start: Floats, source: SampledFunctions, target: SampledFunctions, 
     source, target : SampledFunctions
     sizes : sequence of int
         Rising; those below k are passed over. The target has a fit for each.
+    signs : mapping of int to +1 or -1, optional
+        Signs that some of the source's functions keep all along, by the function from 0, the constant left out.
 
     References
     ----------
@@ -51,7 +60,7 @@ def zoom_out(start: Floats, source: SampledFunctions, target: SampledFunctions, 
     grown = start
     for size in sizes:
         if size >= len(start):
-            grown = _step(grown, source, target, size)
+            grown = with_signs(_step(grown, source, target, size), signs or {})
     return grown
 
 
@@ -83,6 +92,24 @@ def nearest_rows(queries: Floats, rows: Floats) -> Ints:
         block -= half_norms
         nearest[start : start + CHUNK] = block.argmax(axis=1)
     return nearest
+
+
+def rounded(functional_map: Floats) -> tuple[Ints, Ints]:
+    """Return (ks,) the target's function that each of the source's mostly is, and +1 or -1: a map as order and sign."""
+    order = linear_sum_assignment(-np.abs(functional_map.T))[1]
+    entries = functional_map[order, np.arange(len(order))]
+    return order, np.where(entries < 0, -1, 1)
+
+
+def with_signs(functional_map: Floats, signs: Mapping[int, int]) -> Floats:
+    """Return a map, the constant included, in which given functions of the source have the given signs."""
+    if not signs:
+        return functional_map
+    found = rounded(functional_map[1:, 1:])[1]
+    turn = np.ones(functional_map.shape[1])
+    for function, sign in signs.items():
+        turn[1 + function] = sign * found[function]
+    return functional_map * turn
 
 
 def with_constant(functional_map: Floats) -> Floats:

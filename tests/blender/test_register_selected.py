@@ -267,15 +267,79 @@ def test_one_undo_takes_everything_back(balls):
     assert everything_on(bpy.data.objects["large"].data) == before
 
 
-def test_parts_without_a_partner_have_labels_that_no_other_mesh_has(extension):
-    from eigenparts.operators.registration import _with_own_labels
+def test_every_sign_that_is_shown_can_be_flipped_without_a_new_analysis(registered, monkeypatch):
+    """The hand has no symmetry, so no flipped matching fits; it is shown all the same, as not sure."""
+    from eigenparts.operators import engine
 
-    cuts = [np.array([0, 1, 7, 3]), np.array([9, 2, 0])]
-    renumbered = _with_own_labels(cuts, highest_shared=3, first_free=20)
-    assert [cut.tolist() for cut in renumbered] == [[0, 1, 20, 3], [21, 2, 0]]
+    _, fist = registered
+    bpy.ops.eigenparts.flip_function(object_name=fist.name, number=1)
+    monkeypatch.setattr(engine, "analyze", None, raising=False)
+    for number in (3, 5):
+        before = registration_of(fist)
+        bpy.ops.eigenparts.flip_function(object_name=fist.name, number=number)
+        flipped = registration_of(fist)
+        assert flipped.signs[number - 1] == -before.signs[number - 1]
+        assert flipped.confidence < 0.5
+    assert set(flipped.flips) == {"1", "3", "5"}
 
 
-def test_a_sign_that_no_matching_has_is_told_and_not_kept(extension):
-    from eigenparts.operators.registering import met_flips
+def test_alternatives_need_no_new_analysis(registered, monkeypatch):
+    from eigenparts.operators import engine
 
-    assert met_flips({1: -1, 2: 1}, np.array([1, 1, -1])) == {2: 1}
+    _, fist = registered
+    bpy.ops.eigenparts.next_alternative(object_name=fist.name)
+    monkeypatch.setattr(engine, "analyze", None, raising=False)
+    shown = [registration_of(fist)]
+    for _ in range(shown[0].n_alternatives):
+        bpy.ops.eigenparts.next_alternative(object_name=fist.name)
+        shown.append(registration_of(fist))
+    assert [match.alternative for match in shown] == [*range(1, shown[0].n_alternatives + 1), 0]
+
+
+def test_a_reference_is_found_again_under_another_name(registered):
+    rest, fist = registered
+    rest.name = "renamed"
+    assert registration_of(fist).reference == "renamed"
+    bpy.ops.eigenparts.next_alternative(object_name=fist.name)
+    assert registration_of(fist).alternative == 1
+
+
+def test_a_reference_that_is_gone_is_told(registered):
+    rest, fist = registered
+    bpy.data.objects.remove(rest)
+    bpy.context.view_layer.objects.active = fist
+    with pytest.raises(RuntimeError, match=r'no mesh object "rest" here'):
+        bpy.ops.eigenparts.flip_function(number=1)
+
+
+def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
+    """Cancelled as the window does it: at a report of progress while the pair is matched."""
+    from eigenparts.operators import engine
+    from eigenparts.operators.register_selected import EIGENPARTS_OT_register_selected as Operator
+    from eigenparts.operators.registering import Registers, Wish
+
+    def cancel(fraction, text):
+        if "order and signs" in text:
+            raise engine.Cancelled
+
+    before = everything_on(fist.data)
+    settings = {name: Operator.bl_rna.properties[name].default for name in ("field", "eigenfunction", "attribute")}
+    settings |= {"order": "AUTO", "boundary": "NEUMANN", "use_modifiers": False}
+    work, _ = Registers.start(None, bpy.context, rest, [fist], Wish(mirrored=True), settings)
+    with pytest.raises(engine.Cancelled):
+        work(cancel)
+    assert everything_on(fist.data) == before
+
+
+def test_parts_that_were_corrected_by_hand_are_registered_too(rest, fist):
+    tip = values_of(rest.data, "part") == 1
+    height = np.array([polygon.center.z for polygon in rest.data.polygons])
+    painted = tip & (height > np.median(height[tip]))
+    rest.data.polygons.foreach_set("select", painted)
+    bpy.ops.eigenparts.paint_part(new=True)
+    labels = values_of(rest.data, "part")
+    assert len(np.unique(labels[painted])) == 1
+    bpy.ops.eigenparts.register_selected()
+    np.testing.assert_array_equal(values_of(rest.data, "part"), labels)
+    assert set(values_of(fist.data, "part")) == set(labels)
+    assert agreement(rest, fist) > 0.93
