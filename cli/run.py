@@ -9,9 +9,9 @@ from ..operators.refusals import Refusal
 from . import batch
 from .jobs import Job, in_the_way, jobs_of_files
 from .processes import cluster_crew, local_crew
-from .register import Register
+from .registering import Register
 from .report import Report
-from .segment import Segment
+from .segmenting import Segment
 from .telling import ProgressLine, teller_for
 from .work import Command, failed, work_here
 

@@ -9,6 +9,7 @@ import pytest
 from compute import TriangleMesh, analyze
 from tests.cli.files import add_object
 from tests.shapes import icosphere, star
+from tools.extension import load_extension
 
 EXPORTERS = {
     ".obj": lambda path: bpy.ops.wm.obj_export(filepath=path),
@@ -150,3 +151,12 @@ def test_wrong_arguments_are_explained_with_exit_code_2(run, star_off):
     assert run("segment", star_off, "--level", 1, "--parts", 2)[0] == 2
     assert run("dissolve", star_off)[0] == 2
     assert run("--help")[0] == 0
+
+
+def test_the_extension_can_be_switched_on_and_off_around_a_command(run, star_off, tmp_path):
+    """No module of the command line may be called like one of its functions."""
+    extension = load_extension()
+    for _ in range(2):
+        extension.register()
+        assert run("segment", star_off, "--output", tmp_path)[0] == 0
+        extension.unregister()

@@ -18,7 +18,7 @@ from . import formats
 from .finished import digest_of
 from .objects import chosen, engine_options, report_each, row_of, settings_of_field, store
 from .report import Report
-from .segment import choice_of
+from .segmenting import choice_of
 
 
 @dataclass(frozen=True, eq=False)
