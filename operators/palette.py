@@ -3,11 +3,12 @@
 import numpy as np
 
 BODY = "9e9e9e"
-# From the qualitative schemes of Okabe and Ito and of Paul Tol, ordered so that each colour is as far as possible from
-# all before it, in normal sight and under complete protanopia, deuteranopia and tritanopia.
+# Chosen one after the other, each as far as possible from the body, from all before it and most of all from the one
+# just before: by CIEDE2000 in normal sight, where lightness counts less because shading changes it, and under complete
+# protanopia, deuteranopia and tritanopia (Machado et al. 2009).
 PARTS = (
-    *("e69f00", "0077bb", "cc3311", "882e72", "66ccee", "f0e442", "ffaabb", "117733", "332288", "72190e"),
-    *("59a14f", "ae76a3", "cae0ab", "aa4499", "77aadd", "ee6677", "bbcc33", "99ddff", "9c755f"),
+    *("ee9900", "4433cc", "bb0000", "3399ff", "772244", "bbeebb", "ffbbff", "008866", "ddee77", "ff2277"),
+    *("443377", "66ddcc", "1166ff", "880022", "888833", "bb5599", "88cc66", "995544", "9977bb"),
 )
 
 
