@@ -102,13 +102,13 @@ class ArcTree:
         return part
 
 
-def two_arcs(is_of_maxima: bool) -> ArcTree:
-    """Return a tree of two arcs: what a single border cuts off, and the rest."""
-    none = np.zeros(2)
-    return ArcTree(
-        is_of_maxima, 1, 0, np.array([1, -1]), np.ones(2, dtype=np.int64), np.zeros(2, dtype=np.int64),
-        np.array([0, -1]), np.array([-1, NEVER]), none, none, none, none,
-    )  # fmt: skip
+def flat_tree(n_parts: int, is_of_maxima: bool) -> ArcTree:
+    """Return a tree of parts that all end at its root: what single borders cut off, and the rest."""
+    n, part = n_parts + 1, np.arange(1, n_parts + 2)
+    ends = np.append(np.zeros(n_parts, dtype=np.int64), -1)
+    parent = np.where(ends < 0, -1, n_parts)
+    closing = np.where(ends < 0, NEVER, -1)
+    return ArcTree(is_of_maxima, n, 0, parent, part, np.zeros(n, dtype=np.int64), ends, closing, *np.zeros((4, n)))
 
 
 @dataclass(frozen=True, eq=False)

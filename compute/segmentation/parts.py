@@ -102,10 +102,10 @@ class Segmentation:
         Raises
         ------
         LevelError
-            If the parts are not those of one level of one field, so that no level sets bound them.
+            If the parts were carried over from another mesh, so that no level sets bound them.
         """
         if self._trace is None:
-            raise LevelError("Only the parts of one level have borders inside triangles; these end at edges.")
+            raise LevelError("Only parts of the mesh's own field have borders inside triangles; these end at edges.")
         return self._trace()
 
     @cached_property

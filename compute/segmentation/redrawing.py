@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..mesh import Bools, Floats, Ints
-from .arc_tree import ArcTree, two_arcs
+from .arc_tree import ArcTree, flat_tree
 from .borders import Crossings, cross_edges
 from .branches import Branches, divided_branches
 from .carrying import Divided, place_of
@@ -157,7 +157,7 @@ def corrected_crossings(
     ]
     is_known = profile.arcs[0] >= 0
     # Each drawn border is the end of a tree of two arcs: what lies beyond it, and the rest.
-    trees = (*divided.hierarchy.trees, *(two_arcs(border.hill.tree.is_of_maxima) for border in drawn))
+    trees = (*divided.hierarchy.trees, *(flat_tree(1, border.hill.tree.is_of_maxima) for border in drawn))
     heights = (*closing_heights, *(np.array([border.level, np.nan]) for border in drawn))
     arcs = tuple(np.where(is_known, np.where(border.is_beyond, 0, 1), -1).astype(np.int32) for border in drawn)
     extended = replace(profile, arcs=(*profile.arcs, *arcs))

@@ -1,10 +1,14 @@
 """A part that was divided further, put back into its segmentation."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..fields import Net
 from ..mesh import Ints
+from .borders import Polyline
 from .parts import BODY, Parts, Segmentation
 
 
@@ -41,7 +45,14 @@ def inserted(whole: Segmentation, part: int, inside: Ints, own: Segmentation, ow
     joined["n_triangles"][is_divided] -= own.parts.n_triangles[added].sum()
     left = joined["n_triangles"] > 0
     parts = Parts(**{name: column[left] for name, column in joined.items()})
-    return Segmentation(labels, parts, whole.level, (*whole.warnings, *own.warnings))
+    trace = partial(_all_borders, whole, part, own, first)
+    return Segmentation(labels, parts, whole.level, (*whole.warnings, *own.warnings), trace)
+
+
+def _all_borders(whole: Segmentation, part: int, own: Segmentation, first: int) -> tuple[Polyline, ...]:
+    """Return the borders of all parts, and those inside the one that was divided."""
+    inner = (replace(line, part=int(_renumbered(np.array(line.part), part, first))) for line in own.borders)
+    return (*whole.borders, *inner)
 
 
 def _renumbered(labels: Ints, part: int, first: int) -> Ints:

@@ -1,5 +1,7 @@
 """The division along the zero level of an eigenfunction: into halves where no feature would cut, such as a torso."""
 
+from functools import partial
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -8,8 +10,11 @@ from ..fields import ScalarField
 from ..mesh import Bools, Ints, TriangleMesh
 from ..surface import Surface
 from .arc_areas import share_below
+from .arc_tree import flat_tree
+from .borders import Polyline, cross_edges, part_of_border, trace_borders
 from .faces import FaceGraph, face_graph, sum_by
 from .parts import Parts, Segmentation
+from .profile import edge_profile
 
 
 def divide_at_zero(field: ScalarField, mesh: TriangleMesh, surface: Surface) -> Segmentation:
@@ -26,7 +31,44 @@ def divide_at_zero(field: ScalarField, mesh: TriangleMesh, surface: Surface) -> 
     tip = _extrema(field, labels[surface.input_triangle], ids)
     none = np.full(len(ids), -1)
     parts = Parts(ids, np.zeros_like(ids), tip, none, sum_by(labels, mesh.areas)[1:], count[1:])
-    return Segmentation(labels.astype(np.int32), parts, 0)
+    trace = partial(_zero_lines, field, mesh, surface, labels)
+    return Segmentation(labels.astype(np.int32), parts, 0, _trace=trace)
+
+
+def _zero_lines(field: ScalarField, mesh: TriangleMesh, surface: Surface, labels: Ints) -> tuple[Polyline, ...]:
+    """Return the lines on which the field is zero, each as the border of the part above it."""
+    hill, part = _hills(field, labels[surface.input_triangle])
+    tree = flat_tree(len(part), is_of_maxima=True)
+    profile = edge_profile(surface, field, (hill,), mesh.edges.vertices)
+    cuts = [np.append(part, 0)]
+    heights = np.append(np.zeros(len(part)), np.nan)
+    return trace_borders(mesh, cross_edges(profile, (tree,), (heights,), cuts), part_of_border(cuts))
+
+
+def _hills(field: ScalarField, label_of_surface: Ints) -> tuple[Ints, Ints]:
+    """Return for each vertex of the net which piece above zero it is on, and the part that each piece lies in.
+
+    Vertices below zero get the number behind the last piece; pieces too small for a face have no part.
+    """
+    is_above = field.values > 0
+    corners = field.net.triangles
+    left, right = np.concatenate([corners[:, :2], corners[:, 1:]]).T
+    both = is_above[left] & is_above[right]
+    n = len(is_above)
+    joined = coo_array((np.ones(int(both.sum()), dtype=bool), (left[both], right[both])), shape=(n, n))
+    piece = connected_components(joined, directed=False)[1]
+    _, hill = np.unique(piece[is_above], return_inverse=True)
+    n_hills = 1 + int(hill.max(initial=-1))
+    of_vertex = np.full(n, n_hills)
+    of_vertex[is_above] = hill
+    inside = is_above[corners].all(axis=1)
+    votes = np.zeros((n_hills, 1 + int(label_of_surface.max())))
+    np.add.at(
+        votes,
+        (of_vertex[corners[inside, 0]], label_of_surface[field.net.triangle_of_surface[inside]]),
+        field.net.areas[inside],
+    )
+    return of_vertex, votes.argmax(axis=1)
 
 
 def _is_negative(field: ScalarField, surface: Surface, n_triangles: int) -> Bools:

@@ -1,5 +1,7 @@
 """Borders: level sets on the triangles of the input."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,8 +81,42 @@ def test_a_segmentation_knows_its_borders(tilted_star):
     mesh, heights = tilted_star
     segmentation = analyze(mesh, field=heights).segment(level=2)
     assert {border.part for border in segmentation.borders} == set(segmentation.parts.id.tolist()) - {0}
-    with pytest.raises(LevelError, match="one level"):
-        _ = zero_level(analyze(mesh)).borders
+
+
+def test_the_zero_level_of_a_long_rectangle_is_its_middle():
+    """The first function is the cosine of half a turn, which is zero in the middle."""
+    (line,) = zero_level(analyze(rectangle(13, 4, width=3.0), n_functions=4)).borders
+    np.testing.assert_allclose(line.points[:, 0], 1.5, atol=1e-3)
+    assert not line.is_closed
+    assert sorted(line.points[[0, -1], 1].tolist()) == [0.0, 1.0]
+
+
+def test_zero_lines_bound_the_parts_above_them():
+    analysis = analyze(star(5, 3), n_functions=4)
+    halves = zero_level(analysis, 2)
+    assert all(line.is_closed for line in halves.borders)
+    positive = {
+        int(part)
+        for part, tip in zip(halves.parts.id, halves.parts.extremum, strict=True)
+        if analysis.eigenbasis.functions[tip, 1] > 0
+    }
+    assert {line.part for line in halves.borders} == positive
+
+
+def test_a_part_that_is_divided_further_has_borders_inside():
+    mesh = star(5, 3)
+    analysis = analyze(mesh, field=mesh.vertices @ np.array([0.3, 1.0, 0.05]))
+    whole, finer = analysis.segment(level=2), analysis.segment(level=2, within=1)
+    assert len(finer.borders) >= len(whole.borders)
+    # A part too small to have a face of its own still has a line around it.
+    assert {line.part for line in finer.borders} >= set(finer.parts.id.tolist()) - {0}
+
+
+def test_parts_of_another_mesh_have_no_borders_inside_triangles():
+    analysis = analyze(star(5, 3))
+    segmentation = replace(analysis.segment(), _trace=None)
+    with pytest.raises(LevelError, match="own field"):
+        _ = segmentation.borders
 
 
 def test_a_sphere_has_no_borders():
