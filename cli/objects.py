@@ -40,12 +40,12 @@ def engine_options(mesh: bpy.types.Mesh, field: str) -> dict[str, Any]:
     return analysis_options(mesh, **settings_of_field(field))
 
 
-def store(mesh: bpy.types.Mesh, outcome: Outcome) -> None:
-    """Put an analysis on its mesh."""
-    state.store(mesh, outcome.stored, outcome.source, outcome.description)
+def store(mesh: bpy.types.Mesh, outcome: Outcome) -> tuple[str, ...]:
+    """Put an analysis on its mesh, and return warnings."""
+    return state.store(mesh, outcome.stored, outcome.source, outcome.description)
 
 
-def row_of(obj: bpy.types.Object, labels: BranchLabels, outcome: Outcome) -> Report:
+def row_of(obj: bpy.types.Object, labels: BranchLabels, outcome: Outcome, warnings: tuple[str, ...]) -> Report:
     """Return what the report says of a divided object."""
     return {
         "name": obj.name,
@@ -53,7 +53,7 @@ def row_of(obj: bpy.types.Object, labels: BranchLabels, outcome: Outcome) -> Rep
         "n_levels": outcome.stored.hierarchy.n_levels,
         "parts": part_rows(obj.data, labels),
         "seconds": round(outcome.seconds, 3),
-        "warnings": [*outcome.warnings, *labels.warnings],
+        "warnings": [*outcome.warnings, *warnings, *labels.warnings],
     }
 
 

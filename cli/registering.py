@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import numpy as np
 
 from ..operators import engine, exchange, registered, results, state
 from ..operators.analyze import Outcome, outcome_of
@@ -50,7 +51,7 @@ class Reference:
     @property
     def highest_label(self) -> int:
         """The last of the labels that all share."""
-        return int(self.prepared.parts.segmentation.parts.id.max())
+        return self.prepared.parts.given.highest
 
 
 class Register:
@@ -78,7 +79,8 @@ class Register:
         objects = chosen(formats.load(path), self._options.object)
         if path.resolve() != self._options.source.resolve():
             return report_each(objects, self._divide)
-        return report_each(objects, lambda obj: self._show(obj) if obj.name == reference.name else self._divide(obj))
+        shown = bpy.data.objects[reference.name]
+        return report_each(objects, lambda obj: self._show(obj) if obj == shown else self._divide(obj, shown))
 
     @cached_property
     def _reference(self) -> Reference:
@@ -89,27 +91,31 @@ class Register:
 
     def _show(self, obj: bpy.types.Object) -> Report:
         """Divide the reference itself."""
-        store(obj.data, self._reference.outcome)
-        labels = results.segment_mesh(obj.data, level=self._reference.level, mode=self._reference.mode)
-        return row_of(obj, labels, self._reference.outcome)
+        reference = self._reference
+        warnings = store(obj.data, reference.outcome)
+        labels = results.segment_mesh(obj.data, level=reference.level, mode=reference.mode)
+        return row_of(obj, labels, reference.outcome, warnings)
 
-    def _divide(self, obj: bpy.types.Object) -> Report:
-        results.refuse_foreign_results(obj.data)
-        analysis, outcome = _analyze(obj.data, self._options.field)
-        first_free = max(self._first_free, self._reference.highest_label + 1)
-        found = register_analyzed(self._reference.prepared, analysis, outcome, self._wish, first_free)
+    def _divide(self, obj: bpy.types.Object, reference_object: bpy.types.Object | None = None) -> Report:
+        """Give a mesh the parts of the reference, which is an object of the same file or of another."""
+        reference, mesh = self._reference, obj.data
+        results.refuse_foreign_results(mesh)
+        analysis, outcome = _analyze(mesh, self._options.field)
+        first_free = max(self._first_free, reference.highest_label + 1)
+        found = register_analyzed(reference.prepared, analysis, outcome, self._wish, first_free)
         self._first_free = max(first_free, int(found.labels.parts.id.max()) + 1)
-        self._write(obj.data, found)
-        row = row_of(obj, found.labels, outcome)
+        warnings = store(mesh, outcome)
+        settings = {**settings_of_field(self._options.field), "use_modifiers": False}
+        match = match_of(found, reference.name, self._wish, settings)
+        registered.remember(mesh, reference.tables, match, reference_object)
+        results.show_labels(mesh, found.labels, outcome.stored.branches, reference.mode)
+        return self._row(obj, found, warnings)
+
+    def _row(self, obj: bpy.types.Object, found: Found, warnings: tuple[str, ...]) -> Report:
+        row = row_of(obj, found.labels, found.outcome, warnings)
         for part in row["parts"]:
             part["matched"] = part["id"] <= self._reference.highest_label
         return row | {"reference": self._reference.name, "confidence": round(float(found.matching.confidence), 4)}
-
-    def _write(self, mesh: bpy.types.Mesh, found: Found) -> None:
-        settings = {**settings_of_field(self._options.field), "use_modifiers": False}
-        store(mesh, found.outcome)
-        registered.remember(mesh, self._reference.tables, match_of(found, self._reference.name, self._wish, settings))
-        results.show_labels(mesh, found.labels, found.outcome.stored.branches, self._reference.mode)
 
 
 def _prepare(options: argparse.Namespace) -> Reference:
@@ -120,12 +126,14 @@ def _prepare(options: argparse.Namespace) -> Reference:
     mode = options.mode or state.mode_of(mesh)
     shown = _shown_level(mesh)
     analysis, outcome = _analyze(mesh, options.field)
-    choice = choice_of(options) or ({"level": shown} if shown is not None else {})
-    segmentation = analysis.segment(**choice, mode=mode)
     store(mesh, outcome)
-    results.segment_mesh(mesh, level=segmentation.level, mode=mode)
-    prepared = engine.prepare_reference(analysis, segmentation)
-    return Reference(obj.name, outcome, segmentation.level, mode, prepared, registered.tables_of(mesh))
+    choice = choice_of(options) or ({"level": shown} if shown is not None else {})
+    labels = results.segment_mesh(mesh, mode=mode, **choice)
+    shape = engine.divisible(analysis, engine.matching_shape(analysis), outcome.polygon_of_triangle)
+    # As they are shown, with what the user corrected.
+    faces = exchange.read_own_integers(mesh, results.PART).astype(np.int64)
+    prepared = engine.with_parts(shape, faces, labels.parts, labels.level)
+    return Reference(obj.name, outcome, labels.level, mode, prepared, registered.tables_of(mesh))
 
 
 def _shown_level(mesh: bpy.types.Mesh) -> int | None:

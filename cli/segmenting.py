@@ -36,9 +36,9 @@ class Segment:
         mesh = obj.data
         results.refuse_foreign_results(mesh)
         outcome = analyze_arrays(exchange.read_mesh(mesh), engine_options(mesh, self._options.field), silent)
-        store(mesh, outcome)
+        warnings = store(mesh, outcome)
         labels = results.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))
-        return row_of(obj, labels, outcome)
+        return row_of(obj, labels, outcome, warnings)
 
 
 def choice_of(options: argparse.Namespace) -> dict[str, Any]:
