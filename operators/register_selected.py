@@ -15,10 +15,7 @@ NOTHING_ELSE = "Select the meshes to register, and last the one that has the par
 
 
 class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operator):
-    """Give all selected meshes the parts of the active one: the same numbers, names and colors.
-
-    Moving the level of one of them afterwards divides it anew by its own features
-    """
+    """Give all selected meshes the parts of the active one: the same numbers, names and colors"""
 
     bl_idname = "eigenparts.register_selected"
     bl_label = "Register Selected"

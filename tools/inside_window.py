@@ -14,20 +14,23 @@ INTERVAL = 0.02
 
 
 class Ticks:
-    """How long the window was silent between two ticks of a timer that asks for one each hundredth of a second."""
+    """How long the window was silent between ticks of a timer that asks for one each hundredth of a second.
 
-    def __init__(self):
-        self.gaps, self._last, self._goes_on = [], time.perf_counter(), True
+    With each gap goes what ``told`` says at its end.
+    """
+
+    def __init__(self, told=lambda: ""):
+        self.gaps, self._told, self._last, self._goes_on = [], told, time.perf_counter(), True
         bpy.app.timers.register(self._tick, persistent=True)
 
     def _tick(self):
         now = time.perf_counter()
-        self.gaps.append(now - self._last)
+        self.gaps.append((now - self._last, self._told()))
         self._last = now
         return 0.01 if self._goes_on else None
 
     def stop(self):
-        """Return the gaps in seconds."""
+        """Return pairs of seconds and what was told."""
         self._goes_on = False
         return self.gaps
 

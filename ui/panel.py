@@ -5,7 +5,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import faults, registered, state
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
-from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis, draw_sentence
+from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_sentence
 
 # Rows of the list, always the same, so that nothing below it jumps when the level moves.
 N_ROWS = 8
@@ -60,19 +60,11 @@ class EIGENPARTS_PT_level(EigenpartsPanel, bpy.types.Panel):
     bl_order = 10
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout, mesh = self.layout, analyzed_mesh(context)
-        if mesh is None:
-            draw_missing_analysis(layout, context)
-            return
-        try:
-            summary = state.summarize(mesh)
-        except state.Refusal as refusal:
-            draw_sentence(layout, str(refusal), context.region.width)
-        else:
-            _draw_level(layout, mesh, summary)
-        status = context.window_manager.eigenparts
-        if status.problem and status.problem_of == mesh.name_full:
-            draw_sentence(layout, status.problem, context.region.width)
+        layout, mesh = self.layout, active_mesh(context)
+        layout.label(text=_told(mesh), translate=False)
+        if mesh is not None:
+            _draw_level(layout.column(), mesh)
+            _draw_problems(layout, context, mesh)
 
 
 class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
@@ -80,9 +72,9 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
     bl_order = 20
 
     def draw(self, context: bpy.types.Context) -> None:
-        mesh = analyzed_mesh(context)
+        mesh = active_mesh(context)
         if mesh is None:
-            draw_missing_analysis(self.layout, context)
+            self.layout.label(text=_told(mesh), translate=False)
             return
         rows = {"rows": N_ROWS, "maxrows": N_ROWS}
         settings = mesh.eigenparts
@@ -95,11 +87,14 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        mesh = analyzed_mesh(context)
+        mesh = active_mesh(context)
+        if mesh is None or not state.is_analyzed(mesh):
+            self.layout.label(text=_told(mesh), translate=False)
         if mesh is None:
-            draw_missing_analysis(self.layout, context)
             return
-        _draw_outputs(self.layout.column(), mesh.eigenparts)
+        column = self.layout.column()
+        column.enabled = state.is_analyzed(mesh)
+        _draw_outputs(column, mesh.eigenparts)
         column = self.layout.column(align=True)
         cuts = column.row(align=True)
         cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN").method = "INSERT"
@@ -115,8 +110,8 @@ def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -
         layout.prop(settings, "attribute")
 
 
-def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, summary: state.Summary) -> None:
-    layout.label(text=_told(mesh, summary), translate=False)
+def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
+    layout.enabled = state.is_analyzed(mesh)
     layout.row().prop(mesh.eigenparts, "mode", expand=True)
     column = layout.column(align=True)
     column.prop(mesh.eigenparts, "level")
@@ -124,14 +119,34 @@ def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, summary: state
     column.operator("eigenparts.segment", text="Default Level", icon="LOOP_BACK")
 
 
-def _told(mesh: bpy.types.Mesh, summary: state.Summary) -> str:
-    """Return where the parts come from."""
-    match = registered.read(mesh)
+def _draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, mesh: bpy.types.Mesh) -> None:
+    """Say what is wrong with what the mesh remembers, and what the last change met."""
+    status = context.window_manager.eigenparts
+    if state.is_analyzed(mesh) and _summary(mesh) is None:
+        draw_sentence(layout, state.DAMAGED, context.region.width)
+    if status.problem and status.problem_of == mesh.name_full:
+        draw_sentence(layout, status.problem, context.region.width)
+
+
+def _told(mesh: bpy.types.Mesh | None) -> str:
+    """Return where the parts come from, or why there are none."""
+    if mesh is None:
+        return translated(NO_MESH)
+    match, summary = registered.read(mesh), _summary(mesh)
     if match is not None:
         return translated("Parts of {name}").format(name=match.reference)
+    if summary is None:
+        return translated(state.ABSENT)
     return translated("{field}, levels 0 to {highest}").format(
         field=translated(summary.description), highest=summary.n_levels - 1
     )
+
+
+def _summary(mesh: bpy.types.Mesh) -> state.Summary | None:
+    try:
+        return state.summarize(mesh)
+    except state.Refusal:
+        return None
 
 
 def _draw_outputs(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:

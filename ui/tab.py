@@ -16,19 +16,20 @@ class EigenpartsPanel:
     bl_category = "Eigenparts"
 
 
+def active_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
+    """Return the mesh of the active object, if it is one."""
+    return context.object.data if context.object is not None and context.object.type == "MESH" else None
+
+
 def analyzed_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
     """Return the active mesh if it is analyzed."""
-    obj = context.object
-    is_analyzed = obj is not None and obj.type == "MESH" and state.is_analyzed(obj.data)
-    return obj.data if is_analyzed else None
+    mesh = active_mesh(context)
+    return mesh if mesh is not None and state.is_analyzed(mesh) else None
 
 
 def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Say why the panel is empty."""
-    is_mesh = context.object is not None and context.object.type == "MESH"
-    row = layout.row()
-    row.active = False
-    row.label(text=state.ABSENT if is_mesh else NO_MESH)
+    layout.label(text=NO_MESH if active_mesh(context) is None else state.ABSENT)
 
 
 def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:

@@ -71,7 +71,7 @@ def take(window):
 @pytest.fixture(scope="session")
 def hand():
     """The smallest of the characters."""
-    return examples.hand()
+    return examples.hand(2000)
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,140 @@
+"""How long the window is silent while a mesh is analyzed in it, and how soon ESC gives it back.
+
+usage: python -m benchmarks.responsiveness ZIP [--vertices N ...]
+"""
+
+import argparse
+import os
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from examples import humanoid
+from examples.character import Character
+from tools.window import Window, what_is_missing
+
+STATUS = "bpy.context.window_manager.eigenparts"
+TICKS = f"ticks = Ticks(lambda: {STATUS}.text if {STATUS}.is_running else 'before and after')"
+# At which part of the way ESC is pressed.
+FRACTIONS = (0.02, 0.2, 0.4, 0.6, 0.8)
+# What the view is redrawn by while nothing is computed, as often as progress redraws it.
+REDRAW = """
+def redraw():
+    with over_view() as context:
+        for region in context.area.regions:
+            if region.type == "UI":
+                region.tag_redraw()
+    return 0.1 if redrawing else None
+redrawing = True
+bpy.app.timers.register(redraw)
+"""
+
+
+def main(arguments: list[str]) -> int:
+    """Print two Markdown tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("archive", type=Path, help="the zip for this machine")
+    parser.add_argument("--vertices", type=int, nargs="+", default=[13_000, 50_000])
+    options = parser.parse_args(arguments)
+    if what_is_missing():
+        sys.exit(what_is_missing())
+    with tempfile.TemporaryDirectory() as folder:
+        window = _open(Path(folder), options.archive)
+        try:
+            _measure(window, options.vertices)
+        finally:
+            window.close()
+    return 0
+
+
+def _open(folder: Path, archive: Path) -> Window:
+    window = Window(folder)
+    copy = shutil.copy(archive, folder)
+    window.run(
+        f"bpy.ops.extensions.package_install_files(filepath={str(copy)!r}, repo='user_default', enable_on_install=True)"
+    )
+    window.run("with over_view(): bpy.ops.object.select_all(action='SELECT'); bpy.ops.object.delete()")
+    window.run("with over_view() as context: context.space_data.show_region_ui = True")
+    window.settle(3.0)
+    window.run(
+        "with over_view() as context:\n"
+        "    next(r for r in context.area.regions if r.type == 'UI').active_panel_category = 'Eigenparts'"
+    )
+    return window
+
+
+def _measure(window: Window, sizes: list[int]) -> None:
+    version, load = window.value("bpy.app.version_string"), os.getloadavg()[0]
+    sys.stdout.write(f"Blender {version}, {os.cpu_count()} cores, load before {load:.1f}\n\n")
+    sys.stdout.write(f"Idle, sidebar redrawn ten times a second: longest gap {1000 * _idle(window):.0f} ms\n\n")
+    sys.stdout.write("| vertices | s | median gap | longest | over 150 ms | the five longest, and when |\n")
+    sys.stdout.write("|---|---|---|---|---|---|\n")
+    told = []
+    for size in sizes:
+        _add(window, humanoid(size))
+        sys.stdout.write(_gaps_told(window))
+        told.append(_cancelling_told(window))
+    sys.stdout.write(
+        "\n| vertices | " + " | ".join(f"ESC at {f:.0%}" for f in FRACTIONS) + " |\n|---|---|---|---|---|---|\n"
+    )
+    sys.stdout.write("".join(told))
+
+
+def _idle(window: Window) -> float:
+    window.run(REDRAW + "ticks = Ticks()")
+    time.sleep(4.0)
+    window.run("redrawing = False")
+    return max(gap for gap, _ in window.value("ticks.stop()"))
+
+
+def _add(window: Window, character: Character) -> None:
+    vertices, faces = character.vertices.round(6).tolist(), character.quads.tolist()
+    window.run(
+        f"mesh = bpy.data.meshes.new('body')\nmesh.from_pydata({vertices}, [], {faces})\n"
+        "body = bpy.data.objects.new('body', mesh)\n"
+        "for other in list(bpy.data.objects): bpy.data.objects.remove(other)\n"
+        "bpy.context.scene.collection.objects.link(body)\n"
+        "bpy.context.view_layer.objects.active = body\n"
+        "with over_view(): bpy.ops.view3d.view_axis(type='FRONT'); bpy.ops.view3d.view_all()"
+    )
+    window.settle(2.0)
+
+
+def _gaps_told(window: Window) -> str:
+    start = time.monotonic()
+    window.run(TICKS)
+    _invoke(window)
+    while window.value(f"{STATUS}.is_running or 'eigenparts_state' not in mesh"):
+        time.sleep(0.5)
+    seconds = time.monotonic() - start
+    window.settle(2.0)
+    gaps = sorted(window.value("ticks.stop()"), reverse=True)
+    longest = ", ".join(f"{1000 * gap:.0f} {told}" for gap, told in gaps[:5])
+    median = statistics.median(gap for gap, _ in gaps)
+    n_long = sum(gap > 0.15 for gap, _ in gaps)
+    size = window.value("len(mesh.vertices)")
+    row = (f"{size}", f"{seconds:.1f}", f"{1000 * median:.0f} ms", f"{1000 * gaps[0][0]:.0f} ms", f"{n_long}", longest)
+    return f"| {' | '.join(row)} |\n"
+
+
+def _cancelling_told(window: Window) -> str:
+    seconds = []
+    for fraction in FRACTIONS:
+        _invoke(window)
+        window.wait_for(f"{STATUS}.is_running and {STATUS}.fraction >= {fraction}")
+        start = time.monotonic()
+        window.press("ESC")
+        window.wait_for(f"not {STATUS}.is_running")
+        seconds.append(f"{1000 * (time.monotonic() - start):.0f} ms")
+    return f"| {window.value('len(mesh.vertices)')} | {' | '.join(seconds)} |\n"
+
+
+def _invoke(window: Window) -> None:
+    window.run("with over_view(): bpy.ops.eigenparts.analyze('INVOKE_DEFAULT')")
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,24 @@
+"""The texts of the extension in other languages than English: one table a language."""
+
+import bpy
+
+from .german import GERMAN
+
+# By Blender's name of the language.
+LANGUAGES = {"de_DE": GERMAN}
+# Blender looks for the labels of operators in a context of their own.
+CONTEXTS = (bpy.app.translations.contexts.default, bpy.app.translations.contexts.operator_default)
+
+
+def register() -> None:
+    """Give Blender the tables."""
+    tables = {
+        language: {(context, text): translation for text, translation in table.items() for context in CONTEXTS}
+        for language, table in LANGUAGES.items()
+    }
+    bpy.app.translations.register(__package__, tables)
+
+
+def unregister() -> None:
+    """Take them back."""
+    bpy.app.translations.unregister(__package__)
