@@ -7,7 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import LevelError
+from .errors import LevelError, MeshError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
 from .field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
 from .fields import DIFFUSION, Net, ScalarField, eigenfunction_field
@@ -27,7 +27,7 @@ from .segmentation.parts import Segmentation, cut_arcs, label_branches
 from .segmentation.profile import EdgeProfile, edge_profile
 from .segmentation.subparts import inserted
 from .segmentation.zero_level import divide_at_zero
-from .surface import Surface, clean_surface
+from .surface import SHELLS, Surface
 
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.
@@ -224,6 +224,7 @@ def analyze(
     n_functions: int | None = None,
     order: int | str = "auto",
     boundary: str = "neumann",
+    shells: str = "bridged",
     progress: Progress | None = None,
 ) -> Analysis:
     """Compute a field on the mesh and the hierarchy of its features.
@@ -231,7 +232,7 @@ def analyze(
     Parameters
     ----------
     mesh : TriangleMesh
-        Any mesh; its largest component is analyzed.
+        Any mesh; of several shells those that prolong the largest are analyzed with it.
     field : "diffusion", int or (V,) array
         The auto diffusion function, the eigenfunction of that number (from 1), or the user's own values.
     n_functions : int, optional
@@ -239,6 +240,8 @@ def analyze(
     order : 1, 2, 3 or "auto"
         Degree of the finite elements; "auto" takes cubic ones as long as they are cheap.
     boundary : "neumann" or "dirichlet"
+    shells : "bridged" or "largest"
+        Whether loose parts are bridged where they nearly touch, or only the largest one is analyzed.
     progress : callable, optional
         ``progress(fraction, text)``; may raise :class:`Cancelled`.
 
@@ -249,7 +252,9 @@ def analyze(
     """
     progress = rising(progress or silent)
     progress(0.0, "Checking the mesh")
-    surface = clean_surface(mesh)
+    if shells not in SHELLS:
+        raise MeshError(f'Loose parts are "bridged" or the "largest" is taken, not "{shells}".')
+    surface = SHELLS[shells](mesh)
     chosen = choose_field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
     progress(0.8, "Finding the features")
     net = chosen.field.net
@@ -353,8 +358,8 @@ def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:
     warnings = []
     if surface.n_components > 1:
         warnings.append(
-            f"The mesh has {surface.n_components} loose parts; the largest was analyzed, the others follow what is"
-            " next to them."
+            f"The mesh has {surface.n_components} loose parts; {surface.n_joined} of them were analyzed, the others"
+            " follow what is next to them."
         )
     if hierarchy.n_levels == 1:
         warnings.append("The shape has no features: it is one part.")

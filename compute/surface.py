@@ -1,17 +1,18 @@
 """The part of a mesh that is analyzed: one clean component, and the way back to every triangle of the input."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from .errors import MeshError
-from .mesh import Ints, TriangleMesh
+from .mesh import Bools, Ints, TriangleMesh
+from .shells import bridge_shells
 
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """One connected component of an input mesh, welded and without collapsed or repeated triangles.
+    """What is analyzed of an input mesh: a connected surface, welded and without collapsed or repeated triangles.
 
     Attributes
     ----------
@@ -20,11 +21,13 @@ class Surface:
     vertex_of_input : (V,) int64
         The vertex that stands for each input vertex: itself, or the first of its doubles.
     input_triangle : (T',) int64
-        The input triangle that each analyzed triangle is.
+        The input triangle that each analyzed triangle is or, if it bridges two shells, stands on.
     triangle_of_input : (T,) int64
         The analyzed triangle that each input triangle is, repeats or, if it is not analyzed, lies nearest to.
     n_components : int
         Components of the input after welding.
+    n_joined : int
+        How many of them are analyzed together.
     """
 
     mesh: TriangleMesh
@@ -32,6 +35,7 @@ class Surface:
     input_triangle: Ints
     triangle_of_input: Ints
     n_components: int
+    n_joined: int = 1
 
 
 def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
@@ -53,20 +57,73 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
     MeshError
         If there is no such component, or it has no two triangles.
     """
+    welded = _weld(mesh)
+    label = welded.mesh.component_of_triangle
+    return _surface_of(mesh, welded, label == _checked(component, int(label.max()) + 1))
+
+
+def bridged_surface(mesh: TriangleMesh) -> Surface:
+    """Return the largest component together with the shells that prolong it, in a state that can be analyzed.
+
+    Where shells nearly touch, triangles of our own hold them together; see `compute.shells`. The rest is as in
+    `clean_surface`.
+
+    Raises
+    ------
+    MeshError
+        If the mesh has no component of two triangles.
+    """
+    welded = _weld(mesh)
+    label = welded.mesh.component_of_triangle
+    bridges = bridge_shells(welded.mesh) if label.any() else None
+    is_chosen = label == 0 if bridges is None else bridges.is_joined[label]
+    surface = _surface_of(mesh, welded, is_chosen)
+    if bridges is None or not len(bridges.triangles):
+        return surface
+    triangles = np.vstack([surface.mesh.triangles, bridges.triangles])
+    origin = np.append(surface.input_triangle, welded.input_triangle[bridges.pier])
+    n_joined = int(bridges.is_joined.sum())
+    return replace(surface, mesh=TriangleMesh(mesh.vertices, triangles), input_triangle=origin, n_joined=n_joined)
+
+
+@dataclass(frozen=True, eq=False)
+class _Welded:
+    """All components of an input, welded and without collapsed or repeated triangles.
+
+    Attributes
+    ----------
+    mesh : TriangleMesh
+        T" triangles over the vertices of the input.
+    vertex_of_input : (V,) int64
+    input_triangle : (T",) int64
+    twin : (T,) int64
+        The first input triangle with the same corners, or -1 for collapsed ones.
+    """
+
+    mesh: TriangleMesh
+    vertex_of_input: Ints
+    input_triangle: Ints
+    twin: Ints
+
+
+def _weld(mesh: TriangleMesh) -> _Welded:
     vertex_of_input = _weld_open_doubles(mesh)
     corners = vertex_of_input[mesh.triangles]
     twin = _first_twin(corners, len(mesh.vertices))
     kept = np.flatnonzero(twin == np.arange(len(twin)))
-    welded = TriangleMesh(mesh.vertices, corners[kept])
-    label = welded.component_of_triangle
-    n_components = int(label.max()) + 1
-    chosen = kept[label == _checked(component, n_components)]
+    return _Welded(TriangleMesh(mesh.vertices, corners[kept]), vertex_of_input, kept, twin)
+
+
+def _surface_of(mesh: TriangleMesh, welded: _Welded, is_chosen: Bools) -> Surface:
+    chosen = welded.input_triangle[is_chosen]
     if len(chosen) < 2:
         raise MeshError(
             "The largest connected piece of the mesh is a single triangle; merge the vertices of the faces first."
         )
-    surface = TriangleMesh(mesh.vertices, corners[chosen])
-    return Surface(surface, vertex_of_input, chosen, _nearest_chosen(mesh, twin, chosen), n_components)
+    surface = TriangleMesh(mesh.vertices, welded.mesh.triangles[is_chosen])
+    n_components = int(welded.mesh.component_of_triangle.max()) + 1
+    nearest = _nearest_chosen(mesh, welded.twin, chosen)
+    return Surface(surface, welded.vertex_of_input, chosen, nearest, n_components)
 
 
 def _checked(component: int | None, n_components: int) -> int:
@@ -107,3 +164,7 @@ def _nearest_chosen(mesh: TriangleMesh, twin: Ints, chosen: Ints) -> Ints:
         centres = mesh.vertices[mesh.triangles].mean(axis=1)
         nearest[outside] = cKDTree(centres[chosen]).query(centres[outside])[1]
     return nearest
+
+
+# What can be done with a mesh of several shells.
+SHELLS = {"bridged": bridged_surface, "largest": clean_surface}

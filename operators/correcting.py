@@ -145,7 +145,7 @@ def free_part(hierarchy: "engine.Hierarchy", items: tuple["engine.Correction", .
 def _faces_of(mesh: bpy.types.Mesh) -> tuple["engine.FaceGraph", "engine.Relief"]:
     arrays = read_mesh(mesh)
     triangles = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-    surface = engine.clean_surface(triangles)
+    surface = engine.bridged_surface(triangles)
     graph = engine.face_graph(triangles, surface, arrays.polygon_of_triangle)
     heights = state.vertex_heights(mesh)
     return graph, engine.relief_of(surface, heights, arrays.polygon_of_triangle, graph.stands_for)

@@ -98,7 +98,7 @@ def _show(mesh: bpy.types.Mesh, arcs: list[np.ndarray], level: int, mode: str) -
 def _face_graph(mesh: bpy.types.Mesh) -> "engine.FaceGraph":
     arrays = read_mesh(mesh)
     triangles = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-    return engine.face_graph(triangles, engine.clean_surface(triangles), arrays.polygon_of_triangle)
+    return engine.face_graph(triangles, engine.bridged_surface(triangles), arrays.polygon_of_triangle)
 
 
 def _refuse_shared(obj: bpy.types.Object) -> None:

@@ -28,7 +28,7 @@ _HOME = {
     "FaceGraph": "segmentation.faces",
     "shortened_borders": "segmentation.edge_borders",
     "face_graph": "segmentation.faces",
-    "clean_surface": "surface",
+    "bridged_surface": "surface",
     "cross_edges": "segmentation.borders",
     "softened_labels": "geodesics",
     "Correction": "segmentation.corrections",
