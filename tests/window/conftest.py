@@ -46,6 +46,7 @@ def window(application):
         "with over_view() as context:\n"
         "    bpy.ops.object.select_all(action='SELECT')\n"
         "    bpy.ops.object.delete()\n"
+        "    bpy.data.batch_remove(bpy.data.meshes)\n"
         "    context.space_data.show_region_ui = True"
     )
     application.settle(2.0)
