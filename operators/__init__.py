@@ -30,5 +30,8 @@ register, unregister = bpy.utils.register_submodule_factory(
         "register_selected",
         "flip_function",
         "next_alternative",
+        "skeleton_options",
+        "create_armature",
+        "create_skeleton_curves",
     ],
 )

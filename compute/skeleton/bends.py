@@ -10,13 +10,13 @@ from ..mesh import Bools, Floats, Ints
 N_POINTS = 48
 # What a joint must save of a limb's deviation from its bones: the integral along the limb of the squared distance,
 # all lengths in radii of the limb. A bend of 30 degrees in the middle of a limb of ten radii saves 5.5.
-BEND = 0.6
+BEND = 0.8
 # A neck is thinner than this fraction of the limb on either side of it: wrists 0.6, knees 0.95.
 NECK = 0.82
 # Bones longer than this many radii can be divided.
 SLENDER = 7.0
 # Bends nearer than this many radii to another joint are not worth a bone.
-LEAST_LENGTH = 1.0
+LEAST_LENGTH = 1.5
 
 
 @dataclass(frozen=True, eq=False)

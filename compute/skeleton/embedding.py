@@ -11,6 +11,7 @@ from ..analysis import Analysis, reeb_graph
 from ..errors import LevelError, MeshError
 from ..mesh import Bools, Floats, Ints
 from ..msc.reeb import ReebGraph
+from ..segmentation.parts import BODY
 from .branching import Chain, chains_between
 from .hubs import Hub, gathered_hubs, hub_number
 from .interior import Interior
@@ -215,11 +216,11 @@ def _root(chains: list[Chain], hubs: list[Hub], slices: Slices) -> int:
 
 
 def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:
-    """Return the part that the widest of the level sets below a hub lies in."""
-    below = [int(slices.of_arc(arc)[-1]) for arc, (_, high) in enumerate(graph.arcs.tolist()) if high in hub.nodes]
-    if not below:
-        return 0
-    return int(slices.part[max(below, key=lambda row: slices.girth[row])])
+    """Return the part that the widest of the level sets below a hub lies in; what grows out of it lies above."""
+    arcs = enumerate(graph.arcs.tolist())
+    below = [slices.of_arc(arc) for arc, (low, high) in arcs if high in hub.nodes and low not in hub.nodes]
+    tops = [int(of_arc[-1]) for of_arc in below if len(of_arc)]
+    return int(slices.part[max(tops, key=lambda top: slices.girth[top])]) if tops else BODY
 
 
 def _from_root(chains: list[Chain], hubs: list[Hub], root: int) -> tuple[list[Chain], list[bool]]:

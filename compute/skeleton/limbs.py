@@ -76,6 +76,8 @@ class Trace:
     curve : Curve
     joints : (n + 1,) int64
         Points of the curve, both ends among them.
+    has_carrier : bool
+        Whether its first bone lies in the hub's part and carries the limb.
     point_of_slice : (s,) int64
         The point of the curve that each slice lies at.
     """
@@ -84,6 +86,7 @@ class Trace:
     ends: Ends
     curve: Curve
     joints: Ints
+    has_carrier: bool
     point_of_slice: Ints
 
 
@@ -105,8 +108,9 @@ def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_piec
     curve, length = resampled(places, np.concatenate([radius[:1], radius, radius[-1:]]))
     last = len(curve.along) - 1
     point = np.minimum(np.searchsorted(curve.along, length), last)
-    fixed = np.unique(np.concatenate([[0], point[_borders(chain, ends, slices, places, radius)], [last]]))
-    return Trace(chain, ends, curve, joints_along(curve, fixed, n_pieces), point[1:-1])
+    borders = _borders(chain, ends, slices, places, radius)
+    joints = joints_along(curve, np.unique(np.concatenate([[0], point[borders], [last]])), n_pieces)
+    return Trace(chain, ends, curve, joints, bool((borders == 1).any()), point[1:-1])
 
 
 def with_equal_joints(traces: list[Trace], slices: Slices, partner: Ints) -> list[Trace]:
@@ -116,8 +120,9 @@ def with_equal_joints(traces: list[Trace], slices: Slices, partner: Ints) -> lis
     for part, trace in of_part.items():
         other = of_part.get(int(partner[part])) if part < len(partner) else None
         if other is not None and other is not trace:
-            equal[trace] = _agreed(*sorted([trace.joints, other.joints], key=lambda joints: (len(joints), *joints)))
-    return [replace(trace, joints=equal[trace]) if trace in equal else trace for trace in traces]
+            joints = _agreed(*sorted([trace.joints, other.joints], key=lambda joints: (len(joints), *joints)))
+            equal[trace] = replace(trace, joints=joints, has_carrier=trace.has_carrier or other.has_carrier)
+    return [equal.get(trace, trace) for trace in traces]
 
 
 def _agreed(fewer: Ints, more: Ints) -> Ints:
@@ -130,6 +135,8 @@ def lay_limb(trace: Trace, slices: Slices) -> Limb:
     chain, ends, curve, joints = trace.chain, trace.ends, trace.curve, trace.joints
     bone = np.searchsorted(joints[1:-1], trace.point_of_slice, side="right")
     part = _main_parts(bone, slices.part[chain.slices], slices.length[chain.slices], len(joints) - 1, ends)
+    if trace.has_carrier:
+        part[0] = ends.parts[0]
     places = curve.places[0, joints].copy()
     for first in (np.flatnonzero(part[1:] != part[:-1]) + 1).tolist():
         places[first] = _deeper(curve, joints[first], joints[first + 1], ends, int(part[first - 1]))

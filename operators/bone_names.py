@@ -1,0 +1,73 @@
+"""What bones are called: after their parts, numbered outward, with the suffix that Blender mirrors poses by."""
+
+from collections import Counter
+
+import numpy as np
+
+ROOT = "Root"
+SUFFIXES = {1: ".L", -1: ".R", 0: ""}
+# Names that already tell a side, and names that nobody gave.
+SIDED = (".L", ".R", "_L", "_R", ".l", ".r", "_l", "_r")
+UNNAMED = "Part "
+
+
+def name_bones(
+    parent: np.ndarray,
+    part: np.ndarray,
+    names: dict[int, str],
+    pairing: dict[int, tuple[int, int]],
+    taken: set[str],
+) -> list[str]:
+    """Return (J,) the name of the bone that ends in each joint; the first is that of the root.
+
+    Parameters
+    ----------
+    parent, part : (J,) int
+        Of the joints of a skeleton.
+    names : dict
+        Of the parts.
+    pairing : dict
+        For each part that has a side, the part both are called after and the side.
+    taken : set of str
+        Names that must not be used.
+    """
+    sided = {number: _sided(number, names, pairing) for number in names}
+    goals = _goals(parent, part)
+    count = Counter(int(number) for number, goal in zip(part[1:], goals[1:], strict=True) if goal < 0)
+    seen: Counter[int] = Counter()
+    given = [_free(ROOT, "", taken)]
+    for joint in range(1, len(parent)):
+        own, goal = int(part[joint]), goals[joint]
+        base, suffix = sided[goal if goal >= 0 else own]
+        if goal >= 0:
+            base += " root"
+        elif count[own] > 1:
+            seen[own] += 1
+            base += f"_{seen[own]}"
+        given.append(_free(base, suffix, taken.union(given)))
+    return given
+
+
+def _goals(parent: np.ndarray, part: np.ndarray) -> list[int]:
+    """Return for each bone that only carries another part the number of that part, -1 for all others."""
+    goals = []
+    for joint in range(len(parent)):
+        carried = set(part[parent == joint].tolist())
+        is_carrier = joint > 0 and len(carried) == 1 and int(part[joint]) not in carried
+        goals.append(carried.pop() if is_carrier else -1)
+    return goals
+
+
+def _sided(number: int, names: dict[int, str], pairing: dict[int, tuple[int, int]]) -> tuple[str, str]:
+    name = names[number]
+    if name.endswith(SIDED):
+        return name[:-2], name[-2:]
+    first, side = pairing.get(number, (number, 0))
+    # Both sides share a name, unless the user has named them.
+    shared = names.get(first, name) if name.startswith(UNNAMED) else name
+    return shared, SUFFIXES[side]
+
+
+def _free(base: str, suffix: str, taken: set[str]) -> str:
+    candidates = [base + suffix, *(f"{base}_{number:03}{suffix}" for number in range(1, len(taken) + 2))]
+    return next(candidate for candidate in candidates if candidate not in taken)

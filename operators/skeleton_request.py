@@ -1,0 +1,150 @@
+"""What operators have in common that lay bones into the active mesh: the analysis, its skeleton, left and right."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import bpy
+import numpy as np
+
+from . import engine, exchange, part_sides, part_table, state
+from .analysis_request import AnalysisRequest
+from .analyze import Ticket, find_mesh
+from .results import PART
+from .skeleton_options import ArmatureOptions, SkeletonOptions
+
+
+@dataclass(frozen=True)
+class Laid:
+    """A skeleton with all that its bones are called after.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+    weights : (V, J) array or None
+        How much each bone moves each vertex, if that was wanted.
+    pairing : dict of int to (int, int)
+        For each part that has a side, the part both sides are called after and +1 for left, -1 for right.
+    """
+
+    skeleton: "engine.Skeleton"
+    weights: np.ndarray | None
+    pairing: dict[int, tuple[int, int]]
+
+
+@dataclass(frozen=True, eq=False)
+class BoneWish:
+    """What is known of the parts, and what kind of skeleton is wanted.
+
+    Attributes
+    ----------
+    labels : (F,) int32
+        Part of each polygon.
+    level : int
+        Which features have bones.
+    n_pieces : int
+        Bones in a long straight limb.
+    poses : tuple of (V, 3) arrays
+        The same vertices elsewhere.
+    pairing : dict
+        Sides that are known from the mesh that this one is registered to; empty if there are none.
+    needs_weights : bool
+    """
+
+    labels: np.ndarray
+    level: int
+    n_pieces: int
+    poses: tuple[np.ndarray, ...] = ()
+    pairing: dict[int, tuple[int, int]] = field(default_factory=dict)
+    needs_weights: bool = False
+
+
+class SkeletonRequest(SkeletonOptions, AnalysisRequest):
+    """Analyzes the active mesh anew and lays a skeleton into the parts that it shows."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and state.is_analyzed_for(cls, context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """From the window: what the call leaves open is taken from the panel."""
+        for name in (*SkeletonOptions.__annotations__, *ArmatureOptions.__annotations__):
+            if name in self.properties.bl_rna.properties and not self.properties.is_property_set(name):
+                setattr(self, name, getattr(context.scene.eigenparts_skeleton, name))
+        return super().invoke(context, event)
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
+        obj = context.object
+        arrays, options = self.read(context)
+        labels = exchange.read_own_integers(obj.data, PART)
+        wish = BoneWish(
+            labels,
+            state.summarize(obj.data).level,
+            self.bones_in_limbs,
+            _other_poses(context, arrays),
+            part_sides.of_reference(obj.data),
+            self.needs_weights(),
+        )
+        return partial(lay_bones, arrays, options, wish), Ticket(obj.data.session_uid, exchange.fingerprint(obj.data))
+
+    def needs_weights(self) -> bool:
+        """Whether the mesh is to be bound to the bones with weights of ours."""
+        return False
+
+    def finish(self, context: bpy.types.Context, ticket: Ticket, laid: Laid) -> set[str]:
+        mesh = find_mesh(ticket)
+        obj = next(obj for obj in context.view_layer.objects if obj.data == mesh)
+        part_sides.remember(mesh, laid.pairing)
+        self.build(context, obj, laid)
+        for warning in laid.skeleton.warnings:
+            self.report({"WARNING"}, warning)
+        return {"FINISHED"}
+
+
+def lay_bones(
+    arrays: exchange.MeshArrays, options: dict[str, Any], wish: BoneWish, progress: Callable[[float, str], None]
+) -> Laid:
+    """Run the engine; knows nothing of Blender, so any thread may do it."""
+
+    def of_analysis(fraction: float, text: str) -> None:
+        progress(0.6 * fraction, text)
+
+    def of_symmetry(fraction: float, text: str) -> None:
+        progress(0.6 + 0.3 * fraction, text)
+
+    analysis = engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options, progress=of_analysis)
+    labels = wish.labels[arrays.polygon_of_triangle]
+    partner = engine.mirror_parts(analysis, labels, progress=of_symmetry)
+    progress(0.9, "Laying bones")
+    level = min(wish.level, analysis.hierarchy.n_levels - 1)
+    skeleton = engine.skeleton(
+        analysis, level=level, labels=labels, poses=wish.poses, n_pieces=wish.n_pieces, partner=partner
+    )
+    progress(0.95, "Binding the mesh")
+    weights = engine.binding_weights(analysis, skeleton) if wish.needs_weights else None
+    return Laid(skeleton, weights, wish.pairing or _pairing(skeleton, partner))
+
+
+def part_names(mesh: bpy.types.Mesh, skeleton: "engine.Skeleton") -> dict[int, str]:
+    """Return the names of the parts that bones lie in."""
+    return {part: part_table.name_of(mesh, part) for part in np.unique(skeleton.part).tolist()}
+
+
+def _pairing(skeleton: "engine.Skeleton", partner: np.ndarray | None) -> dict[int, tuple[int, int]]:
+    if partner is None:
+        return {}
+    side = engine.sides(skeleton, partner)
+    return {part: (min(part, int(partner[part])), int(side[part])) for part in np.flatnonzero(side).tolist()}
+
+
+def _other_poses(context: bpy.types.Context, arrays: exchange.MeshArrays) -> tuple[np.ndarray, ...]:
+    """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
+    poses = []
+    for obj in context.selected_objects:
+        if obj is context.object or obj.type != "MESH" or obj.mode == "EDIT":
+            continue
+        other = exchange.read_mesh(obj.data)
+        if len(other.vertices) == len(arrays.vertices) and np.array_equal(other.triangles, arrays.triangles):
+            poses.append(other.vertices)
+    return tuple(poses)

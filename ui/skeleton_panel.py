@@ -1,0 +1,31 @@
+"""Sidebar: bones and curves for the parts of the active mesh."""
+
+import bpy
+
+from ..operators import state
+from .tab import EigenpartsPanel
+
+
+class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
+    bl_label = "Skeleton"
+    bl_order = 50
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        obj = context.object
+        return obj is not None and obj.type == "MESH" and state.is_analyzed(obj.data)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.scene.eigenparts_skeleton
+        layout.prop(settings, "weights")
+        layout.prop(settings, "bones_in_limbs")
+        column = layout.column(align=True)
+        column.operator("eigenparts.create_armature", icon="ARMATURE_DATA")
+        column.operator("eigenparts.create_skeleton_curves", text="Curves", icon="CURVE_DATA")
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_skeleton,))
