@@ -2,8 +2,7 @@
 
 import bpy
 
-from ..operators import state
-from .tab import EigenpartsPanel
+from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
 
 
 class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
@@ -11,13 +10,11 @@ class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
     bl_order = 50
     bl_options = {"DEFAULT_CLOSED"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        obj = context.object
-        return obj is not None and obj.type == "MESH" and state.is_analyzed(obj.data)
-
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        if analyzed_mesh(context) is None:
+            draw_missing_analysis(layout, context)
+            return
         layout.use_property_split = True
         layout.use_property_decorate = False
         settings = context.scene.eigenparts_skeleton
