@@ -156,9 +156,16 @@ def _set_softness(settings: "EigenpartsMeshSettings", width: float) -> None:
     _told(settings.id_data, results.write_outputs, None, width)
 
 
-def _select_row(settings: "EigenpartsMeshSettings", context: bpy.types.Context) -> None:
-    if 0 <= settings.active_row < len(settings.rows):
-        _told(settings.id_data, select_faces_of, settings.rows[settings.active_row].part)
+def _active_row(settings: "EigenpartsMeshSettings") -> int:
+    """Return the row of the active part: rows come and go with the level, the part stays the same."""
+    parts = [row.part for row in settings.rows]
+    return parts.index(settings.active_part) if settings.active_part in parts else -1
+
+
+def _set_active_row(settings: "EigenpartsMeshSettings", row: int) -> None:
+    if 0 <= row < len(settings.rows):
+        settings.active_part = settings.rows[row].part
+        _told(settings.id_data, select_faces_of, settings.active_part)
 
 
 class EigenpartsCorrectionRow(bpy.types.PropertyGroup):
@@ -169,14 +176,8 @@ class EigenpartsCorrectionRow(bpy.types.PropertyGroup):
     rests: BoolProperty(name="Rests", description="This level has not the parts it belongs to, so it does nothing now")
 
 
-def active_part(settings: "EigenpartsMeshSettings") -> int:
-    """Return the number of the part that is active in the list, 0 if none is."""
-    is_there = 0 <= settings.active_row < len(settings.rows)
-    return settings.rows[settings.active_row].part if is_there else 0
-
-
 def _part_level(settings: "EigenpartsMeshSettings") -> int:
-    part = active_part(settings)
+    part = settings.active_part
     levels = (
         int(item.value)
         for item in correcting.items_of(settings.id_data)
@@ -187,15 +188,15 @@ def _part_level(settings: "EigenpartsMeshSettings") -> int:
 
 def _set_part_level(settings: "EigenpartsMeshSettings", level: int) -> None:
     highest = max(0, _summary_value(settings, "n_levels") - 1)
-    _told(settings.id_data, set_branch_level, active_part(settings), min(level, highest))
+    _told(settings.id_data, set_branch_level, settings.active_part, min(level, highest))
 
 
 def _part_border(settings: "EigenpartsMeshSettings") -> float:
-    return offset_of(correcting.items_of(settings.id_data), active_part(settings))
+    return offset_of(correcting.items_of(settings.id_data), settings.active_part)
 
 
 def _set_part_border(settings: "EigenpartsMeshSettings", offset: float) -> None:
-    _told(settings.id_data, move_border, active_part(settings), offset)
+    _told(settings.id_data, move_border, settings.active_part, offset)
 
 
 class EigenpartsMeshSettings(bpy.types.PropertyGroup):
@@ -223,7 +224,10 @@ class EigenpartsMeshSettings(bpy.types.PropertyGroup):
         set=_set_n_parts,
     )
     rows: CollectionProperty(type=EigenpartsPartRow)
-    active_row: IntProperty(name="Part", description="Selects the faces of the part", update=_select_row)
+    active_part: IntProperty(name="Active Part", description="Number of the part that was clicked last", default=-1)
+    active_row: IntProperty(
+        name="Part", description="Selects and outlines the part", get=_active_row, set=_set_active_row
+    )
     part_level: IntProperty(
         name="Level of Part",
         description="The level that counts inside the part that is active in the list",
