@@ -1,12 +1,13 @@
-"""Smoothing along the surface, by letting heat flow for a short time."""
+"""Smoothing along the surface, by letting heat flow for a short time, and filling in what is not known."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
-from scipy.sparse.linalg import cg
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import cg, splu
 
 from .errors import MeshError
-from .mesh import Floats, Ints, TriangleMesh
+from .mesh import Bools, Floats, Ints, TriangleMesh
 
 # Heat that has spread for a time t from one side of a straight line falls from 90 % to 10 % over 2 ln 5 sqrt(t).
 WIDTH_OF_UNIT_TIME = 2 * np.log(5)
@@ -69,6 +70,35 @@ def softened_labels(mesh: TriangleMesh, labels: NDArray[np.int32], width: float)
     weights = smoothed(mesh, hard, width)
     weights[weights < LEAST_WEIGHT] = 0.0
     return kinds.astype(np.int64), weights / weights.sum(axis=1, keepdims=True)
+
+
+def harmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floats:
+    """Return values with the unknown ones filled in as smoothly as the known ones around them allow.
+
+    A filled value is a weighted mean of those around it, so nothing becomes larger or smaller than what is known, and
+    constants and sums stay. Pieces of the mesh without any known value keep what they have.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    values : (V, n) float64
+    is_known : (V,) bool
+    """
+    edges = mesh.edges.vertices
+    n = len(mesh.vertices)
+    # Weights by length instead of angles are never negative, whatever the triangles look like.
+    lengths = np.linalg.norm(mesh.vertices[edges[:, 0]] - mesh.vertices[edges[:, 1]], axis=1)
+    weight = 1 / np.maximum(lengths, 1e-3 * max(float(lengths.mean()), 1e-300))
+    graph = coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(n, n)).tocsr()
+    graph = (graph + graph.T).tocsr()
+    piece = connected_components(graph, directed=False)[1]
+    unknown = np.flatnonzero(~is_known & np.isin(piece, piece[is_known]))
+    filled = values.copy()
+    if len(unknown):
+        rows = graph[unknown]
+        system = diags_array(np.asarray(rows.sum(axis=1)).ravel()) - rows[:, unknown]
+        filled[unknown] = splu(system.tocsc()).solve(np.ascontiguousarray(rows[:, is_known] @ values[is_known]))
+    return filled
 
 
 def stiffness(mesh: TriangleMesh) -> csr_array:
