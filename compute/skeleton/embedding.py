@@ -98,7 +98,7 @@ def skeleton(
     .. [1] Reuter, IJCV 2010, section 5.3 and Fig. 19.
     """
     if labels is None:
-        labels = analysis.segment(level=level, mode=mode).labels
+        labels = _labels_of_level(analysis, level, mode)
     graph = reeb_graph(analysis, level=level)
     if labels.min() == labels.max():
         raise LevelError(ONE_PART)
@@ -115,6 +115,14 @@ def skeleton(
         traces = with_equal_joints(traces, slices, partner)
     limbs = [lay_limb(trace, slices) for trace in traces]
     return _assembled(analysis, plan, limbs, slices, interior, labels)
+
+
+def _labels_of_level(analysis: Analysis, level: int | None, mode: str) -> NDArray[np.int32]:
+    """Return the parts of a level; of a shape whose features are all at its handles, the parts that end there."""
+    labels = analysis.segment(level=level, mode=mode).labels
+    if labels.min() == labels.max():
+        return analysis.segment(level=level, mode=mode, essential=True).labels
+    return labels
 
 
 def _checked_poses(analysis: Analysis, poses: Sequence[ArrayLike]) -> list[Floats]:
@@ -264,16 +272,18 @@ def _assembled(
     places = np.concatenate(joints)
     tree, parts = np.concatenate(parent), np.concatenate(part)
     radii = np.concatenate(radius)
-    places = np.where(_is_tip(tree)[:, None], places, interior.centred(places, radii))
-    bones = bones_of_vertices(analysis, slices, bone_of_slice, places, tree, parts)
     pairs = np.array(loops, dtype=np.int64).reshape(-1, 2)
+    is_tip = _is_leaf(tree)
+    is_tip[pairs[:, 0]] = False
+    places = np.where(is_tip[:, None], places, interior.centred(places, radii))
+    bones = bones_of_vertices(analysis, slices, bone_of_slice, places, tree, parts)
     return Skeleton(places, tree, parts, radii, pairs, bones, _warnings(analysis, len(pairs)))
 
 
-def _is_tip(parent: Ints) -> Bools:
-    is_tip = np.ones(len(parent), dtype=bool)
-    is_tip[parent[1:]] = False
-    return is_tip
+def _is_leaf(parent: Ints) -> Bools:
+    is_leaf = np.ones(len(parent), dtype=bool)
+    is_leaf[parent[1:]] = False
+    return is_leaf
 
 
 def _warnings(analysis: Analysis, n_loops: int) -> tuple[str, ...]:

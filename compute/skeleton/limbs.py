@@ -10,7 +10,7 @@ from .branching import Chain
 from .slices import Slices
 
 # A limb whose first ring lies nearer to the hub than this many of its radii begins in the hub itself.
-ROOTED = 0.5
+ROOTED = 0.9
 # A limb turns about a point this many of its radii deeper than where it comes free of the body, as shoulders, hips and
 # knuckles do.
 DEPTH = 0.75
