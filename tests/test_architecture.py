@@ -14,7 +14,10 @@ MAY_IMPORT = {
     "compute": set(),
     "operators": {"compute"},
     "cli": {"compute", "operators"},
-    "ui": {"operators.state", "operators.palette", "operators.registered", "operators.faults", "operators.border_lines"},
+    "ui": {
+        *("operators.state", "operators.palette", "operators.registered", "operators.faults"),
+        *("operators.border_lines", "operators.part_outline"),
+    },
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},
