@@ -88,6 +88,10 @@ class Hypotheses:
         """(h,) both agreements together, 2 at best."""
         return self.symmetric + self.alternating
 
+    def best(self, n_wanted: int) -> "Hypotheses":
+        """Return the first few."""
+        return self.take(np.arange(min(n_wanted, len(self))))
+
     def take(self, chosen: Ints) -> "Hypotheses":
         """Return some of them, in the order given."""
         return Hypotheses(self.maps[chosen], self.symmetric[chosen], self.alternating[chosen])

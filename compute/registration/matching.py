@@ -153,32 +153,48 @@ def match_shapes(
     progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
-    candidates = _ranked_candidates(source.mirrored() if mirrored else source, target, signs or {}, progress)
+    if mirrored:
+        source = source.mirrored()
+    n_available = min(source.n_functions, target.n_functions)
+    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+    if signs:
+        candidates, rivals = _candidates_with_signs(source, target, judge, signs, progress)
+    else:
+        candidates = rivals = _ranked_candidates(source, target, judge, progress)
     best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
-    confidence = confidence_of(best, candidates)
+    confidence = confidence_of(best, rivals)
     # What the best one leaves over is for the alternatives, if they fit.
     alternatives = tuple(_matching_of(other, (1 - confidence) * fit_of(other), mirrored) for other in others)
     return replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
 
 
 def _ranked_candidates(
-    source: SpectralShape, target: SpectralShape, signs: Mapping[int, int], progress: Progress
+    source: SpectralShape, target: SpectralShape, judge: Judge, progress: Progress
 ) -> list[Candidate]:
     """Return judged hypotheses, best first; the search is widened until the best of them is sure."""
-    n_available = min(source.n_functions, target.n_functions)
-    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES], signs)
     spectra = spectrum_of(source), spectrum_of(target)
-    # A wider search finds what fits better than the signs that are given, not what fits them better.
-    efforts = EFFORTS[:1] if signs else EFFORTS
     ranked: list[Candidate] = []
-    for number, effort in enumerate(efforts):
-        searching, refining = _halves(section(progress, number / len(efforts), (number + 1) / len(efforts)))
-        found = find_hypotheses(*spectra, effort, signs, searching)
-        judged = judge.judge(found.take(np.arange(min(len(found), effort.n_refined))), refining)
+    for number, effort in enumerate(EFFORTS):
+        searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
+        found = find_hypotheses(*spectra, effort, progress=searching)
+        judged = judge.judge(found.best(effort.n_refined), progress=refining)
         ranked = sorted(ranked + judged, key=lambda candidate: candidate.rank)
         if confidence_of(ranked[0], ranked) >= SURE:
             break
     return ranked
+
+
+def _candidates_with_signs(
+    source: SpectralShape, target: SpectralShape, judge: Judge, signs: Mapping[int, int], progress: Progress
+) -> tuple[list[Candidate], list[Candidate]]:
+    """Return judged hypotheses that keep given signs, best first, and with them the best that do not need to."""
+    keeping, leaving = _halves(progress)
+    effort, spectra = EFFORTS[0], (spectrum_of(source), spectrum_of(target))
+    judged = []
+    for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
+        found = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
+        judged.append(sorted(judge.judge(found, given, refining), key=lambda candidate: candidate.rank))
+    return judged[0], judged[0] + judged[1]
 
 
 def _halves(progress: Progress) -> tuple[Progress, Progress]:

@@ -116,18 +116,10 @@ class Judge:
     source, target : SpectralShape
     sizes : sequence of int
         Of the functional maps, rising.
-    signs : mapping of int to +1 or -1, optional
-        Signs that are kept whatever fits better, by the source's function from 0.
     """
 
-    def __init__(
-        self,
-        source: SpectralShape,
-        target: SpectralShape,
-        sizes: Sequence[int],
-        signs: Mapping[int, int] | None = None,
-    ) -> None:
-        self._source, self._target, self._sizes, self._signs = source, target, sizes, signs
+    def __init__(self, source: SpectralShape, target: SpectralShape, sizes: Sequence[int]) -> None:
+        self._source, self._target, self._sizes = source, target, sizes
         self._source_samples = sample_functions(source.functions[source.samples], ())
         self._target_samples = sample_functions(target.functions[target.samples], sizes)
         self._spectra = spectrum_of(source), spectrum_of(target)
@@ -136,17 +128,28 @@ class Judge:
         self._neighbours = _neighbours(target)
         self._normals = source.project(source.normals)[:last]
 
-    def judge(self, found: Hypotheses, progress: Progress = silent) -> list[Candidate]:
-        """Return a candidate for each hypothesis, in their order; the progress callback may raise `Cancelled`."""
+    def judge(
+        self, found: Hypotheses, signs: Mapping[int, int] | None = None, progress: Progress = silent
+    ) -> list[Candidate]:
+        """Return a candidate for each hypothesis, in their order.
+
+        Parameters
+        ----------
+        found : Hypotheses
+        signs : mapping of int to +1 or -1, optional
+            Signs that are kept whatever fits better, by the source's function from 0.
+        progress : Progress, optional
+            May raise `Cancelled`.
+        """
         candidates = []
         for number, start in enumerate(found.maps):
             progress(number / len(found), "Refining what was found")
-            candidates.append(self._candidate(start))
+            candidates.append(self._candidate(start, signs or {}))
         return candidates
 
-    def _candidate(self, start: Floats) -> Candidate:
+    def _candidate(self, start: Floats, signs: Mapping[int, int]) -> Candidate:
         here, there = self._source_samples, self._target_samples
-        grown = zoom_out(with_constant(start), here, there, self._sizes, self._signs)
+        grown = zoom_out(with_constant(start), here, there, self._sizes, signs)
         nearest = nearest_points(grown, here.functions, there.functions)
         return Candidate(
             start, grown, nearest, *self._moments(grown, len(start)),

@@ -315,7 +315,6 @@ def test_a_reference_that_is_gone_is_told(registered):
 def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
     """Cancelled as the window does it: at a report of progress while the pair is matched."""
     from eigenparts.operators import engine
-    from eigenparts.operators.register_selected import EIGENPARTS_OT_register_selected as Operator
     from eigenparts.operators.registering import Registers, Wish
 
     def cancel(fraction, text):
@@ -323,8 +322,8 @@ def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
             raise engine.Cancelled
 
     before = everything_on(fist.data)
-    settings = {name: Operator.bl_rna.properties[name].default for name in ("field", "eigenfunction", "attribute")}
-    settings |= {"order": "AUTO", "boundary": "NEUMANN", "use_modifiers": False}
+    settings = {"field": "DIFFUSION", "eigenfunction": 1, "attribute": "", "order": "AUTO", "boundary": "NEUMANN"}
+    settings["use_modifiers"] = False
     work, _ = Registers.start(None, bpy.context, rest, [fist], Wish(mirrored=True), settings)
     with pytest.raises(engine.Cancelled):
         work(cancel)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from compute.analysis import Analysis, analyze
-from compute.errors import RegistrationError
+from compute.errors import Cancelled, RegistrationError
 from compute.mesh import TriangleMesh
 from compute.registration.matching import match, match_shapes
 from compute.registration.spectral_shape import SpectralShape, spectral_shape
 from compute.registration.zoomout import nearest_points, with_constant
+from examples import hand, quadruped
 from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, shuffled
 from tests.shapes import icosphere, torus
 
@@ -118,18 +119,46 @@ def test_switching_ellipsoids_are_put_in_order():
     assert matching.order[along[0]] == along[1]
 
 
-def test_equal_arms_go_round_in_order_and_leave_doubt():
-    arms = [(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(5) / 5]
-    star = lumpy_ball(3, tuple((arm, 1.5, 0.25) for arm in arms))
+@pytest.mark.parametrize(("n_arms", "width"), [(5, 0.25), (8, 0.15)], ids=["starfish", "octopus"])
+def test_equal_arms_go_round_in_order_and_leave_doubt(n_arms, width):
+    arms = [(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(n_arms) / n_arms]
+    star = lumpy_ball(4, tuple((arm, 1.5, width) for arm in arms))
     source, target = analyzed(star), analyzed(shuffled(star)[0])
     matching = match(source, target)
     landed = source.matching_basis.nodes[landed_vertices(matching, source, target)]
     tips = nearest_vertices(3 * np.array(arms), target.mesh.vertices)
     angle = np.arctan2(landed[tips, 1], landed[tips, 0])
     steps = np.diff(np.append(angle, angle[0])) % (2 * np.pi)
-    np.testing.assert_allclose(steps, 2 * np.pi / 5, atol=0.2)
+    np.testing.assert_allclose(steps, 2 * np.pi / n_arms, atol=0.2)
     assert matching.confidence < 0.5
     assert matching.alternatives
+
+
+def test_a_coarser_version_of_another_size_is_the_same_shape(paired):
+    finer, coarser = analyzed(lumpy_ball(4, PAIRED_LUMPS)), analyzed(moved(lumpy_ball(2, PAIRED_LUMPS)))
+    for source, target in ((paired, finer), (finer, paired), (paired, coarser), (coarser, paired)):
+        matching = match(source, target)
+        assert matching.confidence > 0.5
+        back = match(target, source)
+        np.testing.assert_allclose((back.map @ matching.map)[:10, :10], np.eye(10), atol=0.25)
+
+
+def test_an_open_version_is_the_same_shape(paired):
+    """The tip of the tail is cut off: what is left has a border, and less area; left stays left."""
+    centres = paired.mesh.vertices[paired.mesh.triangles].mean(axis=1)
+    tail = np.array([0, -1, 0.5]) / np.linalg.norm([0, -1, 0.5])
+    stays = centres @ tail < 0.8 * (centres @ tail).max()
+    opened = analyzed(shuffled(TriangleMesh(paired.mesh.vertices, paired.mesh.triangles[stays]))[0])
+    order = shuffled(paired.mesh)[1]
+    matching = match(paired, opened)
+    assert matching.confidence > 0.5
+    assert match(opened, paired).confidence > 0.5
+    here, there = shape_of(paired), shape_of(opened)
+    is_vertex = there.node < len(order)
+    landed = here.positions[nearest_points(with_constant(matching.map), here.functions, there.functions[is_vertex])]
+    true = paired.mesh.vertices[order[there.node[is_vertex]]]
+    is_aside = np.abs(true[:, 0]) > 0.2
+    assert (landed[:, 0] * true[:, 0] > 0)[is_aside].mean() > 0.98
 
 
 def test_spheres_can_be_matched_in_any_way_so_none_is_sure():
@@ -137,8 +166,50 @@ def test_spheres_can_be_matched_in_any_way_so_none_is_sure():
     assert match(analyzed(coarse), analyzed(fine)).confidence < 0.5
 
 
-def test_shapes_that_have_nothing_in_common_are_not_matched_with_confidence(ball):
-    assert match(ball, analyzed(torus())).confidence < 0.1
+@pytest.mark.parametrize("character", [quadruped, hand])
+def test_shapes_that_have_nothing_in_common_are_not_matched_with_confidence(character):
+    made = character(1500)
+    source = analyzed(TriangleMesh(made.mesh_in_pose("rest"), split(made.quads)))
+    assert match(source, analyzed(torus())).confidence < 0.1
+
+
+@pytest.mark.parametrize("number", [1, 2, 5, 8])
+def test_a_given_sign_is_kept_even_if_no_matching_fits_it(ball, number):
+    """A shape without symmetry has one right sign for each function; the other one is given here."""
+    target = analyzed(shuffled(ball.mesh)[0])
+    best = match(ball, target)
+    flipped = match(ball, target, flips={number: -int(best.signs[number - 1])})
+    assert flipped.signs[number - 1] == -best.signs[number - 1]
+    assert flipped.confidence < 0.5
+
+
+def test_functions_to_match_point_where_the_eigenfunctions_do(paired):
+    own = analyze(paired.mesh)
+    vertices = np.arange(len(paired.mesh.vertices))
+    shown, matched = (basis.functions[vertices] for basis in (own.eigenbasis, own.matching_basis))
+    n_shared = min(shown.shape[1], 12)
+    assert ((shown[:, :n_shared] * matched[:, :n_shared]).sum(axis=0) > 0).all()
+
+
+def test_progress_rises_to_the_end_and_is_told_often(paired):
+    told = []
+    match(paired, analyzed(shuffled(paired.mesh)[0]), progress=lambda fraction, text: told.append(fraction))
+    assert told == sorted(told)
+    assert told[0] >= 0
+    assert told[-1] <= 1
+    assert len(told) > 100
+
+
+@pytest.mark.parametrize("word", ["finite elements", "Measuring", "Searching", "Refining"])
+def test_a_match_can_be_cancelled_at_every_step(word):
+    def cancel(fraction, text):
+        if word in text:
+            raise Cancelled
+
+    source = analyzed(lumpy_ball(2))
+    target = analyzed(shuffled(source.mesh)[0])
+    with pytest.raises(Cancelled):
+        match(source, target, progress=cancel)
 
 
 def test_a_given_sign_is_kept_and_the_others_follow(paired):
@@ -159,6 +230,11 @@ def test_impossible_signs_are_refused_with_a_sentence(ball, flips, sentence):
 
 def nearest_vertices(points, vertices) -> np.ndarray:
     return np.linalg.norm(points[:, None] - vertices, axis=2).argmin(axis=1)
+
+
+def split(quads) -> np.ndarray:
+    """Return the triangles of quads."""
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
 def _depends_on_z_alone(analysis) -> np.ndarray:
