@@ -16,6 +16,9 @@ from .space import FunctionSpace, function_space
 
 BOUNDARIES = ("neumann", "dirichlet")
 
+# In units of 1 / area; smaller eigenvalues are lost in round-off. A needle of proportion 1 to 1e6 has 1e-5.
+LEAST_VALUE = 1e-10
+
 
 @dataclass(frozen=True, eq=False)
 class Eigenbasis:
@@ -114,6 +117,8 @@ def solve_on_surface(
     problem = eigen_problem(space, is_free)
     values, functions = lowest_eigenpairs(problem, n_functions + n_constant, n_constant, largest_ratio, progress)
     values, functions = values[n_constant:], functions[:, n_constant:]
+    if not values[0] > LEAST_VALUE:
+        raise SpectrumError("The faces are collapsed or barely hang together; merge the vertices by distance first.")
     kept = values <= largest_ratio * values[0]
     mass, area = mass_matrix(space), surface.mesh.areas.sum()
     functions = fixed_basis(values[kept], functions[:, kept], mass, space.nodes / np.sqrt(area))
