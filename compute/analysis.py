@@ -343,15 +343,32 @@ def _n_unknowns(surface: Surface, order: int) -> int:
 
 def _divided_further(analysis: Analysis, whole: Segmentation, part: int, mode: str) -> Segmentation:
     """Analyze one part on its own and put its parts in its place."""
+    own = analyze_part(analysis, whole, part)
+    inside = np.flatnonzero(whole.labels == part)
+    return inserted(whole, part, inside, segment_part(own, mode), own.net, analysis.net)
+
+
+def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis:
+    """Return the analysis of one part on its own, cut off along the edges of its triangles.
+
+    Raises
+    ------
+    LevelError
+        If the part has too few faces.
+    """
     inside = np.flatnonzero(whole.labels == part)
     if len(inside) < LEAST_FACES_WITHIN:
         raise LevelError(f"Part {part} has {len(inside)} faces at this level, too few to be divided further.")
     piece = TriangleMesh(analysis.mesh.vertices, analysis.mesh.triangles[inside])
     # No heat stays at the border: with a free one the part would have an end of its own where it was cut off.
     holds_border = analysis.field.name == DIFFUSION and bool((piece.edges.n_triangles == 1).any())
-    own = analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
-    threshold = WITHIN_THRESHOLD / own.field.value_range if holds_border else None
-    return inserted(whole, part, inside, own.segment(threshold=threshold, mode=mode), own.net, analysis.net)
+    return analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
+
+
+def segment_part(own: Analysis, mode: str = "features") -> Segmentation:
+    """Divide a part that was analyzed on its own at the level that is usual for parts."""
+    holds_border = own.field.name == DIFFUSION and own.eigenbasis.boundary == "dirichlet"
+    return own.segment(threshold=WITHIN_THRESHOLD / own.field.value_range if holds_border else None, mode=mode)
 
 
 def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:

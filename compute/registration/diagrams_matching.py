@@ -20,6 +20,7 @@ from ..msc.diagram_distance import bottleneck_distance, hausdorff_distance
 from ..msc.links import links_of
 from ..msc.merge_tree import merge_tree
 from ..segmentation.parts import BODY, Segmentation
+from .spectral_shape import SpectralShape
 
 # How many functions are compared, and how far a function may move (Reuter 2009, sections 4.6 and 4.7).
 DIAGRAM_FUNCTIONS = 6
@@ -93,6 +94,20 @@ def match_diagrams(
         raise RegistrationError(f'The metric is "hausdorff" or "bottleneck", not "{metric}".')
     n_functions = min(n_functions, len(source.eigenbasis.values), len(target.eigenbasis.values))
     here, there = (separated_points(analysis.eigenbasis, n_functions) for analysis in (source, target))
+    return _compared(here, there, metric)
+
+
+def match_shape_diagrams(source: SpectralShape, target: SpectralShape) -> DiagramMatching:
+    """Compare the diagrams of the functions that matching uses, as `match_diagrams` does."""
+    n_functions = min(DIAGRAM_FUNCTIONS, source.n_functions - 1, target.n_functions - 1)
+    here, there = (
+        diagram_points(shape.triangles, shape.functions[:, 1 : 1 + n_functions]) for shape in (source, target)
+    )
+    return _compared(here, there, "hausdorff")
+
+
+def _compared(here: list[Floats], there: list[Floats], metric: str) -> DiagramMatching:
+    n_functions = len(here)
     distances = np.full((n_functions, n_functions, 2), np.inf)
     for i, own in enumerate(here):
         for j in range(max(0, i - NEIGHBOURING), min(n_functions, i + NEIGHBOURING + 1)):
@@ -101,14 +116,19 @@ def match_diagrams(
 
 
 def separated_points(basis: Eigenbasis, n_functions: int) -> list[Floats]:
-    """Return the (n, 2) points (extremum, saddle) of the first functions' diagrams, for a surface of area 1.
+    """Return the (n, 2) points (extremum, saddle) of the first functions' diagrams, for a surface of area 1."""
+    net = refined_net(basis)
+    return diagram_points(net.triangles, basis.functions[:, :n_functions] * np.sqrt(net.areas.sum()))
+
+
+def diagram_points(triangles: Ints, functions: Floats) -> list[Floats]:
+    """Return the (n, 2) points (extremum, saddle) of the diagram of each function (n, k).
 
     The lowest minimum and the highest maximum are in it as one more pair each, so that no diagram is empty.
     """
-    net = refined_net(basis)
-    links = links_of(net.triangles, len(net.positions))
+    links = links_of(triangles, len(functions))
     found = []
-    for values in (basis.functions[:, :n_functions] * np.sqrt(net.areas.sum())).T:
+    for values in functions.T:
         rank = rank_vertices(values)
         trees = merge_tree(rank, links), merge_tree(len(values) - 1 - rank, links)
         points = values[np.concatenate([np.stack([tree.extremum, tree.saddle], axis=1) for tree in trees])]
