@@ -41,6 +41,7 @@ def test_the_level_moves_after_saving_and_loading_without_a_new_analysis(window,
     path = str(window.folder / "hand.blend")
     window.run(f"bpy.ops.wm.save_as_mainfile(filepath={path!r})")
     window.run(f"bpy.ops.wm.open_mainfile(filepath={path!r})")
+    window.settle()
     assert labels(window) == parts
     window.run(f"{LEVEL} = 0")
     assert set(labels(window)) == {0}

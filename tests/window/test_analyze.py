@@ -139,6 +139,9 @@ def test_an_error_that_nobody_foresaw_is_told_and_can_be_reported(window, hand, 
     window.settle()
     take("unexpected_error")
     window.run("module.analyze_arrays = analyze_arrays")
+    # The message goes away when the mouse leaves it.
+    window.point(250, 250)
+    window.settle()
     assert names_on_mesh(window) == before
     choose(window, "copy bug report")
     window.wait_for("'MemoryError' in bpy.context.window_manager.clipboard")
