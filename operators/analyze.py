@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import engine, exchange, results, state
+from . import engine, exchange, function_hints, results, state
 from .analysis_request import AnalysisRequest
 from .refusals import Refusal
 from .viewport import show_vertex_colours
@@ -33,6 +33,7 @@ class Outcome:
     warnings: tuple[str, ...]
     seconds: float
     polygon_of_triangle: np.ndarray
+    hints: tuple["engine.FunctionHint", ...] = ()
 
 
 class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
@@ -51,12 +52,13 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
         told = state.store(mesh, outcome.stored, outcome.source, outcome.description)
+        function_hints.store(mesh, outcome.hints)
         labels = results.segment_mesh(mesh)
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
         for warning in (*outcome.warnings, *told, *labels.warnings):
             self.report({"WARNING"}, warning)
-        self.report({"INFO"}, _told(len(labels.parts), outcome.seconds))
+        self.report({"INFO"}, _told(len(labels.parts), outcome.seconds) + function_hints.sentence(mesh))
         return {"FINISHED"}
 
 
@@ -77,7 +79,10 @@ def outcome_of(
     stored = state.StoredAnalysis(analysis.hierarchy, analysis.branches(arrays.polygon_of_triangle))
     heights = engine.vertex_heights(analysis.surface, analysis.field)
     source = state.BorderSource(analysis.profile(arrays.edges), heights, analysis.closing_heights)
-    return Outcome(stored, source, _described(options), analysis.warnings, seconds, arrays.polygon_of_triangle)
+    is_function = isinstance(options["field"], int)
+    hints = engine.judge_eigenfunctions(analysis.eigenbasis) if is_function else ()
+    described = _described(options)
+    return Outcome(stored, source, described, analysis.warnings, seconds, arrays.polygon_of_triangle, hints)
 
 
 def _described(options: dict[str, Any]) -> str:

@@ -112,3 +112,14 @@ def test_modifiers_that_change_faces_are_refused(star_object):
     star_object.modifiers.new("subdivision", "SUBSURF")
     with pytest.raises(RuntimeError, match="modifiers change the faces"):
         bpy.ops.eigenparts.analyze(use_modifiers=True)
+
+
+def test_an_analysis_by_eigenfunction_tells_which_one_suits(star_object, extension):
+    hints = extension.operators.function_hints
+    bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=1)
+    found = hints.read(star_object.data)
+    assert {number for number, _, _ in found} == set(range(1, 9))
+    assert {n_protrusions for _, _, n_protrusions in found} == {5}
+    assert f"Eigenfunction {found[0][0]} suits best" in hints.sentence(star_object.data)
+    bpy.ops.eigenparts.analyze(field="DIFFUSION")
+    assert hints.read(star_object.data) == []
