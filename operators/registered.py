@@ -40,6 +40,8 @@ class Match:
     mirrored, same_topology : bool
     settings : dict
         The options of the analysis.
+    by_diagrams : tuple of int
+        What persistence diagrams alone say of the first functions, 0 where they leave the sign open.
     """
 
     reference: str
@@ -52,6 +54,7 @@ class Match:
     mirrored: bool
     same_topology: bool
     settings: dict[str, Any]
+    by_diagrams: tuple[int, ...] = ()
 
 
 def remember(
@@ -95,6 +98,7 @@ def read(mesh: bpy.types.Mesh) -> Match | None:
             mirrored=bool(group["mirrored"]),
             same_topology=bool(group["same_topology"]),
             settings=group["settings"].to_dict(),
+            by_diagrams=tuple(int(number) for number in group.get("by_diagrams", ())),
         )
     except (AttributeError, KeyError, TypeError, ValueError):
         return None

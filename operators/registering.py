@@ -152,4 +152,5 @@ def match_of(found: Found, reference: str, wish: Wish, settings: dict[str, Any])
         mirrored=matching.mirrored,
         same_topology=matching.same_topology,
         settings=settings,
+        by_diagrams=found.by_diagrams,
     )

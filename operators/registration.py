@@ -101,6 +101,9 @@ class Found:
         The parts of the reference on the faces of this mesh.
     matching : Matching
     alternative, n_alternatives : int
+    by_diagrams : tuple of int
+        What persistence diagrams alone say of the reference's first functions: the number of the function that each is
+        here, negative where negated; 0 where they do not tell the sign.
     """
 
     outcome: Outcome
@@ -108,6 +111,7 @@ class Found:
     matching: "engine.Matching"
     alternative: int
     n_alternatives: int
+    by_diagrams: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +224,10 @@ def _register(
     matchings = (best, *best.alternatives)
     alternative = wish.alternative % len(matchings)
     labels = engine.label_matched(reference, target, matchings[alternative], first_free)
-    return Found(outcome, labels, matchings[alternative], alternative, len(matchings) - 1)
+    diagrams = engine.match_shape_diagrams(reference.shape.shape, target.shape)
+    by_diagrams = np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order))
+    matching, n_others = matchings[alternative], len(matchings) - 1
+    return Found(outcome, labels, matching, alternative, n_others, tuple(by_diagrams.tolist()))
 
 
 def _part(progress: Progress, start: float, stop: float) -> Progress:

@@ -40,6 +40,13 @@ def _draw_match(layout: bpy.types.UILayout, name: str, match: registered.Match) 
     for number, (place, sign) in enumerate(zip(match.order, match.signs, strict=True), start=1):
         flip = grid.operator("eigenparts.flip_function", text=f"{number}: {'-' if sign < 0 else '+'}{place}")
         flip.object_name, flip.number = name, number
+    if match.by_diagrams:
+        layout.label(text=_told_by_diagrams(match.by_diagrams))
+
+
+def _told_by_diagrams(by_diagrams: tuple[int, ...]) -> str:
+    """Return what persistence diagrams alone say, which does not decide; a question mark where the sign stays open."""
+    return "By diagrams: " + " ".join(f"{number:+d}" if number else "?" for number in by_diagrams)
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_register,))

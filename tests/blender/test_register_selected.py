@@ -121,6 +121,11 @@ def test_it_is_told_which_functions_were_matched(registered):
     assert match.confidence > 0.5
     assert len(set(match.order)) == len(match.signs) == 8
     assert set(match.signs) <= {-1, 1}
+    assert len(match.by_diagrams) == 6
+    # Each hand is its own left or right, so most signs show in the diagrams, and most are those that were found.
+    told = [(abs(number), number > 0) for number in match.by_diagrams]
+    found = [(place, sign > 0) for place, sign in zip(match.order, match.signs, strict=True)]
+    assert sum(one == other for one, other in zip(told, found, strict=False)) >= 3
     assert registration_of(rest) is None
 
 
