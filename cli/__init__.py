@@ -26,8 +26,15 @@ def main(argv: Sequence[str]) -> int:
     return carry_out(options, sys.stdout, sys.stderr)
 
 
+def is_module() -> bool:
+    """Whether Blender is a module of this Python, which gives it no command line of its own."""
+    return not bpy.app.binary_path
+
+
 def register() -> None:
-    _handles.append(bpy.utils.register_cli_command("eigenparts", main))
+    # As a module, Blender would never call the command, and end with a crash because it is still there.
+    if not is_module():
+        _handles.append(bpy.utils.register_cli_command("eigenparts", main))
 
 
 def unregister() -> None:

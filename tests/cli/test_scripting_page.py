@@ -1,0 +1,43 @@
+"""The pages about scripting and the command line say what is true."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import SCHEMA
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def blocks_of(page, language):
+    return re.findall(rf"^```{language}\n(.*?)^```", (DOCS / page).read_text(), re.MULTILINE | re.DOTALL)
+
+
+def test_the_code_of_the_scripting_page_runs(tmp_path):
+    """As a script, in a Python that finds the checkout as a package called eigenparts, and the engine as compute."""
+    root = DOCS.parent
+    (tmp_path / "eigenparts").symlink_to(root)
+    script = tmp_path / "page.py"
+    script.write_text("\n".join(blocks_of("scripting.md", "python")))
+    command = [sys.executable, "-W", "error::DeprecationWarning:__main__", script]
+    paths = {"PYTHONPATH": f"{tmp_path}:{root}", "PATH": ""}
+    process = subprocess.run(command, cwd=tmp_path, env=paths, capture_output=True, text=True)
+    assert process.returncode == 0, process.stdout + process.stderr
+    assert (tmp_path / "monkeys_parts.blend").is_file()
+
+
+def test_the_report_on_the_page_keeps_the_schema():
+    (example,) = blocks_of("command_line.md", "json")
+    assert list(SCHEMA.iter_errors(json.loads(example))) == []
+
+
+@pytest.mark.parametrize("command", ["segment", "register", "batch"])
+def test_every_option_is_on_the_page(run, command):
+    _, lines, _ = run(command, "--help")
+    options = set(re.findall(r"--[a-z-]+", "\n".join(lines))) - {"--help"}
+    page = (DOCS / "command_line.md").read_text()
+    assert {option for option in options if option not in page} == set()
