@@ -8,6 +8,7 @@ from .msc.diagram import PersistenceDiagram, persistence_curve, size_function
 from .msc.diagram_distance import diagram_distance
 from .msc.morse_smale import MorseSmaleComplex
 from .msc.reeb import ReebGraph
+from .registration.correspondence import Correspondence, correspond
 from .registration.matching import Matching, match
 from .registration.population import register
 from .segmentation.parts import Segmentation
@@ -18,6 +19,7 @@ from .skeleton.symmetry import mirror_parts
 __all__ = [
     "Analysis",
     "Cancelled",
+    "Correspondence",
     "Eigenbasis",
     "EngineError",
     "FieldError",
@@ -34,6 +36,7 @@ __all__ = [
     "TriangleMesh",
     "analyze",
     "binding_weights",
+    "correspond",
     "diagram_distance",
     "match",
     "mirror_parts",

@@ -30,6 +30,7 @@ register, unregister = bpy.utils.register_submodule_factory(
         "register_selected",
         "flip_function",
         "next_alternative",
+        "transfer",
         "skeleton_options",
         "create_armature",
         "create_skeleton_curves",

@@ -1,0 +1,199 @@
+"""Transfer layers between meshes; knows nothing of Blender, so any thread may do it."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from . import engine, layers
+from .exchange import MeshArrays
+from .layers import Layer
+from .refusals import Refusal
+
+Progress = Callable[[float, str], None]
+
+# A matching this unsure is none.
+NO_MATCH = 0.03
+NOT_ALIKE = (
+    "{} and {} are not alike enough to be matched (confidence {:.0%}); nothing was transferred. If one is the mirror"
+    " image of the other, choose Mirrored."
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A mesh that layers come from or go to.
+
+    Attributes
+    ----------
+    name : str
+        Of the object.
+    arrays : MeshArrays
+    corners : (T, 3) int64
+        The corner of a face that each corner of a triangle is.
+    corner_vertex, corner_polygon : (C,) int64
+        Vertex and face of each corner.
+    flips : mapping of int to +1 or -1
+        Signs that the user gave when the mesh was registered to the source.
+    alternative : int
+        Which matching the user chose then.
+    """
+
+    name: str
+    arrays: MeshArrays
+    corners: np.ndarray
+    corner_vertex: np.ndarray
+    corner_polygon: np.ndarray
+    flips: Mapping[int, int] = field(default_factory=dict)
+    alternative: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Transferred:
+    """What one target gets.
+
+    Attributes
+    ----------
+    layers : list of Layer
+    is_sure : (V,) bool
+    found_by : str
+        "number", "faces" or "shape".
+    confidence : float
+        Of the matching.
+    torn_seams : tuple of str
+        Layers whose seams could not be kept.
+    """
+
+    layers: list[Layer]
+    is_sure: np.ndarray
+    found_by: str
+    confidence: float
+    torn_seams: tuple[str, ...]
+
+
+def transfer_bodies(
+    source: Body, given: list[Layer], targets: list[Body], *, mirrored: bool, fills: bool, progress: Progress
+) -> list[Transferred]:
+    """Return what each target gets.
+
+    Parameters
+    ----------
+    mirrored : bool
+        Whether the targets are mirror images.
+    fills : bool
+        Whether unsure vertices are filled in from their neighbours.
+    """
+    targets = [_split_alike(source, target) for target in targets]
+    analyses = [
+        _analyze(body, engine.section(progress, 0.3 * k / (1 + len(targets)), 0.3 * (k + 1) / (1 + len(targets))))
+        for k, body in enumerate((source, *targets))
+    ]
+    results = []
+    for number, (target, analysis) in enumerate(zip(targets, analyses[1:], strict=True)):
+        part = engine.section(progress, 0.3 + 0.7 * number / len(targets), 0.3 + 0.7 * (number + 1) / len(targets))
+        found = _correspond(source, target, analyses[0], analysis, mirrored, _naming(part, target.name))
+        results.append(_transferred(found, analyses[0].mesh, analysis.mesh, (source, target), given, fills))
+    return results
+
+
+def _split_alike(source: Body, target: Body) -> Body:
+    """Return a target with the triangles of the source where the faces are the same: poses may split quads apart."""
+    alike = (
+        len(source.arrays.vertices) == len(target.arrays.vertices)
+        and np.array_equal(source.corner_vertex, target.corner_vertex)
+        and np.array_equal(source.corner_polygon, target.corner_polygon)
+    )
+    if not alike:
+        return target
+    triangles = target.corner_vertex[source.corners]
+    polygons = source.arrays.polygon_of_triangle
+    return replace(target, arrays=replace(target.arrays, triangles=triangles, polygon_of_triangle=polygons))
+
+
+def _analyze(body: Body, progress: Progress) -> "engine.Analysis":
+    """Return an analysis that is just enough for matching."""
+    try:
+        mesh = engine.TriangleMesh(body.arrays.vertices, body.arrays.triangles)
+        return engine.analyze(mesh, n_functions=2, order=1, progress=_naming(progress, body.name))
+    except engine.EngineError as error:
+        raise Refusal(f"{body.name}: {error}") from error
+
+
+def _correspond(
+    source: Body, target: Body, here: Any, there: Any, mirrored: bool, progress: Progress
+) -> "engine.Correspondence":
+    flips = dict(target.flips)
+    matching = engine.match(here, there, flips=flips, mirrored=mirrored, progress=engine.section(progress, 0, 0.5))
+    choices = (matching, *matching.alternatives)
+    matching = choices[target.alternative % len(choices)]
+    if matching.confidence < NO_MATCH:
+        raise Refusal(NOT_ALIKE.format(source.name, target.name, matching.confidence))
+    return engine.correspond(here, there, matching=matching, progress=engine.section(progress, 0.5, 0.9))
+
+
+def _transferred(
+    found: "engine.Correspondence", here: Any, there: Any, bodies: tuple[Body, Body], given: list[Layer], fills: bool
+) -> Transferred:
+    carrier = _Carrier(found, here, there, *bodies)
+    carried = [carrier.carry(layer) for layer in given]
+    if fills and not found.is_sure.all():
+        carried = [_filled(found, there, layer) for layer in carried]
+    return Transferred(
+        carried, found.is_sure, found.found_by, float(found.matching.confidence), tuple(carrier.torn_seams)
+    )
+
+
+def _filled(found: "engine.Correspondence", there: Any, layer: Layer) -> Layer:
+    if not layer.can_blend or layer.kind == layers.CORNER:
+        return layer
+    return layer.with_values(engine.fill_unsure(found, there, layer.values.astype(np.float64)))
+
+
+class _Carrier:
+    """Carries layers from one mesh to another."""
+
+    def __init__(self, found: "engine.Correspondence", here: Any, there: Any, source: Body, target: Body) -> None:
+        self._found, self._here, self._there = found, here, there
+        self._source, self._target = source, target
+        self.torn_seams: list[str] = []
+
+    def carry(self, layer: Layer) -> Layer:
+        """Return the layer with values for the target."""
+        if layer.kind in (layers.GROUP, layers.POINT):
+            how = self._found.transfer if layer.can_blend else self._found.transfer_labels
+            return layer.with_values(how(layer.values))
+        if layer.kind == layers.SHAPE_KEY:
+            moved = engine.transfer_displacements(self._found, self._here, self._there, layer.values)
+            return layer.with_values(moved)
+        if layer.kind == layers.CORNER:
+            return layer.with_values(self._corners(layer))
+        return layer.with_values(self._faces(layer.values))
+
+    def _faces(self, values: np.ndarray) -> np.ndarray:
+        """Return for each face what most of its area has on the source."""
+        kinds, kind = np.unique(values, axis=0, return_inverse=True)
+        labels = self._found.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])
+        n_polygons = int(self._target.corner_polygon.max(initial=-1)) + 1
+        polygon = self._target.arrays.polygon_of_triangle
+        return kinds[engine.majority_of_polygons(labels, self._there.areas, polygon, n_polygons)]
+
+    def _corners(self, layer: Layer) -> np.ndarray:
+        triangle_of_polygon = np.zeros(int(self._target.corner_polygon.max(initial=-1)) + 1, dtype=np.int64)
+        polygon = self._target.arrays.polygon_of_triangle
+        triangle_of_polygon[polygon[::-1]] = np.arange(len(polygon))[::-1]
+        values, keeps_seams = engine.transfer_corners(
+            self._found,
+            self._here,
+            layer.values.astype(np.float64)[self._source.corners],
+            self._target.corner_vertex,
+            triangle_of_polygon[self._target.corner_polygon],
+        )
+        if not keeps_seams:
+            self.torn_seams.append(layer.name)
+        return values
+
+
+def _naming(progress: Progress, name: str) -> Progress:
+    """Return a callback that tells of which object it speaks."""
+    return lambda fraction, text: progress(fraction, f"{name}: {text}")
