@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from compute.analysis import analyze
+from compute.errors import MeshError
+from compute.fem import order_choice
 from compute.fem.eigenbasis import solve_eigenbasis
 from compute.fem.order_choice import BYTES_PER_UNKNOWN, choose_order
+from compute.memory import available_memory
 from compute.mesh import TriangleMesh
 from examples import humanoid
 from tests.shapes import icosphere, star
@@ -19,6 +22,19 @@ def test_the_order_falls_as_the_budget_does():
     assert [choice.order for choice in choices] == [3, 2, 1]
     assert [choice.warning is None for choice in choices] == [True, False, False]
     assert choose_order(mesh, budgets[0] - 1).order == 2
+
+
+def test_a_mesh_too_large_for_the_memory_is_refused_before_the_work(monkeypatch):
+    mesh = icosphere(3)
+    monkeypatch.setattr(order_choice, "available_memory", lambda: 642 * order_choice.LEAST_BYTES_PER_VERTEX - 1)
+    with pytest.raises(MeshError, match="642 vertices takes about"):
+        choose_order(mesh)
+    monkeypatch.setattr(order_choice, "available_memory", lambda: 642 * order_choice.LEAST_BYTES_PER_VERTEX)
+    assert choose_order(mesh).order == 1
+
+
+def test_the_memory_at_hand_is_known_here():
+    assert 1e8 < available_memory() < float("inf")
 
 
 def five_arms():
