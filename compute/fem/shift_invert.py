@@ -3,6 +3,8 @@
 For linear elements and small problems; `compute.fem.block_lanczos` is faster for large ones of higher order.
 """
 
+from typing import Any
+
 import numpy as np
 import scipy.linalg
 from scipy.sparse import csr_array
@@ -30,18 +32,28 @@ def factored_by_columns(stiffness: csr_array, mass: csr_array) -> SuperLU:
 
     Linear elements have so few neighbours that finding an order by bisection costs more than it saves.
     """
-    return splu((stiffness - SHIFT * mass).tocsc(), permc_spec="COLAMD")
+    return _factor(stiffness, mass, permc_spec="COLAMD")
 
 
 def factored_as_ordered(stiffness: csr_array, mass: csr_array) -> SuperLU:
     """Return the factor of the shifted operator, in the order of elimination that its rows have."""
-    return splu(
-        (stiffness - SHIFT * mass).tocsc(),
+    return _factor(
+        stiffness,
+        mass,
         permc_spec="NATURAL",
         diag_pivot_thresh=0.0,
         panel_size=PANEL_COLUMNS,
         options={"SymmetricMode": True},
     )
+
+
+def _factor(stiffness: csr_array, mass: csr_array, **options: Any) -> SuperLU:
+    try:
+        return splu((stiffness - SHIFT * mass).tocsc(), **options)
+    except MemoryError as error:
+        raise SpectrumError("The memory is full; take elements of a lower order, or decimate the mesh.") from error
+    except RuntimeError as error:
+        raise SpectrumError("The faces collapse into points or lines; merge the vertices by distance.") from error
 
 
 def arpack_eigenpairs(
