@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Bools, Floats, Ints
+from ..mesh import Floats, Ints
 
 # Points a limb is looked at in.
 N_POINTS = 48
+# How often neighbours are averaged: on coarse meshes slices come in whole rings of triangles, which blurs girths most.
+PLACE_ROUNDS, GIRTH_ROUNDS = 3, 8
 # What a joint must save of a limb's deviation from its bones: the integral along the limb of the squared distance,
 # all lengths in radii of the limb. A bend of 30 degrees in the middle of a limb of ten radii saves 5.5.
 BEND = 0.8
@@ -17,6 +19,8 @@ NECK = 0.82
 SLENDER = 7.0
 # Bends nearer than this many radii to another joint are not worth a bone.
 LEAST_LENGTH = 1.5
+# Borders of parts are joints even nearer, but not nearer than this.
+SHORTEST = 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +46,14 @@ def resampled(places: Floats, radius: Floats) -> tuple[Curve, Floats]:
 
     The first and the last point are no slices but what the limb runs between: the way there is not smoothed.
     """
-    smooth = np.concatenate([places[:, :1], _smoothed(places[:, 1:-1]), places[:, -1:]], axis=1)
+    smooth = np.concatenate([places[:, :1], _averaged(places[:, 1:-1], PLACE_ROUNDS), places[:, -1:]], axis=1)
     steps = np.linalg.norm(np.diff(smooth[0], axis=0), axis=1)
     # Equal places would make the length ambiguous.
     length = np.append(0.0, np.cumsum(np.maximum(steps, 1e-9 * max(steps.sum(), np.finfo(float).tiny))))
     along = np.linspace(0, length[-1], N_POINTS)
     curves = [np.stack([np.interp(along, length, column) for column in pose.T], axis=1) for pose in smooth]
-    return Curve(np.stack(curves), np.interp(along, length, radius), along), length
+    girth = np.interp(along, length, radius)
+    return Curve(np.stack(curves), _averaged(girth[None, :, None], GIRTH_ROUNDS)[0, :, 0], along), length
 
 
 def joints_along(curve: Curve, fixed: Ints, n_pieces: int = 1) -> Ints:
@@ -66,16 +71,17 @@ def joints_along(curve: Curve, fixed: Ints, n_pieces: int = 1) -> Ints:
     for found in (_necks, _bends):
         spans = zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True)
         joints = np.unique(np.concatenate([joints, *(found(curve, *span) for span in spans)]))
+    joints = _spaced(curve, joints, fixed)
     spans = zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True)
     return np.unique(np.concatenate([joints, *(_pieces(curve, *span, n_pieces) for span in spans)]))
 
 
-def _smoothed(places: Floats) -> Floats:
-    """Return points (P, n, 3) with the ripples of single slices taken out; the ends stay."""
-    for _ in range(3):
-        inner = (places[:, :-2] + 2 * places[:, 1:-1] + places[:, 2:]) / 4
-        places = np.concatenate([places[:, :1], inner, places[:, -1:]], axis=1)
-    return places
+def _averaged(values: Floats, rounds: int) -> Floats:
+    """Return values (P, n, d) with the ripples of single slices taken out along n; the ends stay."""
+    for _ in range(rounds):
+        inner = (values[:, :-2] + 2 * values[:, 1:-1] + values[:, 2:]) / 4
+        values = np.concatenate([values[:, :1], inner, values[:, -1:]], axis=1)
+    return values
 
 
 def _necks(curve: Curve, start: int, end: int) -> Ints:
@@ -134,6 +140,17 @@ def _pieces(curve: Curve, start: int, end: int, n_pieces: int) -> Ints:
     return np.round(np.linspace(start, end, n_pieces + 1)[1:-1]).astype(np.int64)
 
 
-def _is_near(curve: Curve, start: int, point: int, end: int) -> Bools | bool:
+def _spaced(curve: Curve, joints: Ints, fixed: Ints) -> Ints:
+    """Return the joints without those that make bones shorter than the limb is thick; fixed ones stay longest."""
+    kept = joints.tolist()
+    by_worth = [joint for joint in kept if joint not in fixed] + fixed[1:-1].tolist()
+    for joint in by_worth:
+        place = kept.index(joint)
+        if _is_near(curve, kept[place - 1], joint, kept[place + 1], SHORTEST if joint in fixed else LEAST_LENGTH):
+            del kept[place]
+    return np.array(kept, dtype=np.int64)
+
+
+def _is_near(curve: Curve, start: int, point: int, end: int, radii: float = LEAST_LENGTH) -> bool:
     distance = min(curve.along[point] - curve.along[start], curve.along[end] - curve.along[point])
-    return bool(distance < LEAST_LENGTH * curve.radius[point])
+    return bool(distance < radii * curve.radius[point])

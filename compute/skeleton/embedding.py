@@ -22,6 +22,8 @@ from .slices import Slices, slice_arcs, triangle_centres
 ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level."
 # How far a tip reaches from the last slice towards the extremum, as long as it stays inside.
 REACHES = (0.85, 0.7, 0.5, 0.3)
+# A middle line that never gets as far out as this fraction of its limb ends in a cavity.
+CAVITY = 0.82
 # The hub in the middle of a shape that has only two ends: no node of the graph.
 MIDDLE = -1
 
@@ -109,7 +111,8 @@ def skeleton(
     centres = np.stack([at_rest, *(slices.means(triangle_centres(analysis, vertices)) for vertices in others)])
     plan = _plan(analysis, graph, slices, centres, np.stack([analysis.mesh.vertices, *others]), interior)
     traces = [
-        trace_limb(chain, ends, slices, centres, n_pieces) for chain, ends in zip(plan.chains, plan.ends, strict=True)
+        trace_limb(chain, ends, slices, plan.centres, n_pieces)
+        for chain, ends in zip(plan.chains, plan.ends, strict=True)
     ]
     if partner is not None:
         traces = with_equal_joints(traces, slices, partner)
@@ -137,7 +140,7 @@ def _checked_poses(analysis: Analysis, poses: Sequence[ArrayLike]) -> list[Float
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """Chains with what they run between, from the root outward, and whether each closes a loop."""
+    """Chains with their ends, from the root outward, whether each closes a loop, and the middles of the slices."""
 
     hubs: list[Hub]
     root: int
@@ -145,6 +148,7 @@ class _Plan:
     chains: list[Chain]
     ends: list[Ends]
     closes_loop: list[bool]
+    centres: Floats
 
 
 def _plan(
@@ -156,15 +160,44 @@ def _plan(
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
     nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
-    ends = []
+    at_rest = analysis.net.positions[analysis.net.triangles].mean(axis=1)
+    ends, centres = [], centres.copy()
     for chain in order:
         start, end = hub_number(hubs, chain.start), hub_number(hubs, chain.end)
         if end >= 0:
             place, part = hubs[end].places, parts[end]
         else:
-            place, part = _reaching(centres[:, chain.slices[-1]], poses[:, nearest[chain.end]], interior), -1
+            crown = _crown(chain, slices, centres[0], at_rest)
+            tip, last = nearest[chain.end], chain.slices[-1]
+            if crown is not None:
+                tip, last = cKDTree(analysis.mesh.vertices).query(at_rest[crown])[1], _widest(chain, slices)
+            place, part = _reaching(centres[:, last], poses[:, tip], interior), -1
+            late = chain.slices[1 + np.flatnonzero(chain.slices == last)[0] :]
+            way = np.linspace(0, 1, len(late) + 2)[1:-1, None]
+            centres[:, late] = centres[:, last, None] + way * (place - centres[:, last])[:, None]
         ends.append(Ends(start, end, np.stack([hubs[start].places, place], axis=1), (parts[start], part)))
-    return _Plan(hubs, root, parts[root], order, ends, closes_loop)
+    return _Plan(hubs, root, parts[root], order, ends, closes_loop, centres)
+
+
+def _crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) -> int | None:
+    """Return the net triangle farthest from where a limb begins, if its extremum lies in a cavity such as a mouth.
+
+    A middle line that runs the length of a limb comes near its farthest point, even if it curls back.
+    """
+    is_own = np.zeros(slices.count, dtype=bool)
+    is_own[chain.slices] = True
+    own = np.flatnonzero(is_own[slices.of_triangle])
+    line = centres[chain.slices]
+    distance = np.linalg.norm(places[own] - line[0], axis=1)
+    farthest = int(distance.argmax())
+    reach = np.linalg.norm(line - line[0], axis=1).max()
+    return int(own[farthest]) if reach < CAVITY * distance[farthest] else None
+
+
+def _widest(chain: Chain, slices: Slices) -> int:
+    """Return the widest slice in the outer half of a chain: behind it the level sets close."""
+    outer = chain.slices[len(chain.slices) // 2 :]
+    return int(outer[slices.girth[outer].argmax()])
 
 
 def _reaching(last: Floats, extremum: Floats, interior: Interior) -> Floats:
@@ -275,7 +308,7 @@ def _assembled(
     pairs = np.array(loops, dtype=np.int64).reshape(-1, 2)
     is_tip = _is_leaf(tree)
     is_tip[pairs[:, 0]] = False
-    places = np.where(is_tip[:, None], places, interior.centred(places, radii))
+    places[~is_tip] = interior.pulled_inside(places[~is_tip], radii[~is_tip])
     bones = bones_of_vertices(analysis, slices, bone_of_slice, places, tree, parts)
     return Skeleton(places, tree, parts, radii, pairs, bones, _warnings(analysis, len(pairs)))
 

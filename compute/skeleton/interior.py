@@ -11,7 +11,7 @@ from ..orientation import wrongly_wound
 from ..surface import Surface
 
 # A point is pulled inside when it lies nearer to the surface than this fraction of the flesh's half thickness there.
-SHALLOW = 0.6
+SHALLOW = 0.2
 # Steps in which a ball shrinks until it fits; most fit after five.
 SHRINKING_STEPS = 20
 # Directions of rays, none along an axis, so that they meet no edges of modelled shapes.
@@ -54,6 +54,15 @@ class Interior:
         depth = np.where(self._is_behind(points, skin), distance, -distance)
         centre, fitting = self._fitting_balls(tree, skin, radius)
         return np.where((depth < SHALLOW * fitting)[:, None], centre, points)
+
+    def pulled_inside(self, points: Floats, radius: Floats) -> Floats:
+        """Return points as `centred` does, and those that rays still find outside from the nearest skin inward."""
+        pulled = self.centred(points, radius)
+        outside = np.flatnonzero(~self.holds(pulled))
+        if len(outside):
+            tree = cKDTree(self.points)
+            pulled[outside] = self._fitting_balls(tree, tree.query(pulled[outside])[1], radius[outside])[0]
+        return pulled
 
     def _is_behind(self, points: Floats, skin: Ints) -> Bools:
         return np.einsum("pj,pj->p", points - self.points[skin], self.normals[skin]) < 0

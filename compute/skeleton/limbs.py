@@ -14,7 +14,7 @@ ROOTED = 0.9
 # A limb turns about a point this many of its radii deeper than where it comes free of the body, as shoulders, hips and
 # knuckles do.
 DEPTH = 0.75
-# But no deeper than this fraction of the way to the hub.
+# But no deeper than this fraction of the way to the joint before it.
 MOST_OF_WAY = 0.7
 
 
@@ -139,19 +139,18 @@ def lay_limb(trace: Trace, slices: Slices) -> Limb:
         part[0] = ends.parts[0]
     places = curve.places[0, joints].copy()
     for first in (np.flatnonzero(part[1:] != part[:-1]) + 1).tolist():
-        places[first] = _deeper(curve, joints[first], joints[first + 1], ends, int(part[first - 1]))
+        if part[first - 1] == ends.parts[0]:
+            places[first] = _deeper(curve, *joints[first - 1 : first + 2].tolist())
     return Limb(ends.start, ends.end, places[1:], curve.radius[joints[1:]], part, chain.slices, bone)
 
 
-def _deeper(curve: Curve, joint: int, following: int, ends: Ends, before: int) -> Floats:
-    """Return where a limb turns that comes free at a joint: deeper along its own axis, where it grows out of a hub."""
+def _deeper(curve: Curve, before: int, joint: int, following: int) -> Floats:
+    """Return where a limb turns that comes free of its hub's part at a joint: deeper, along its own axis."""
     place = curve.places[0, joint]
-    if before != ends.parts[0]:
-        return place
     # Its own axis shows a little further out, where nothing of the body is left.
     beyond = np.searchsorted(curve.along, curve.along[joint] + 2 * curve.radius[joint])
     axis = curve.places[0, min(int(beyond), following)] - place
-    depth = min(DEPTH * float(curve.radius[joint]), MOST_OF_WAY * _gap(ends.places[0, 0], place))
+    depth = min(DEPTH * float(curve.radius[joint]), MOST_OF_WAY * _gap(curve.places[0, before], place))
     return place - depth * axis / max(float(np.linalg.norm(axis)), np.finfo(float).tiny)
 
 
