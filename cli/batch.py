@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..operators.refusals import Refusal
 from .finished import finished_report, is_result
-from .formats import FORMATS
+from .formats import FORMATS, name_of_divided
 from .jobs import Job
 from .report import Report
 
@@ -31,7 +31,8 @@ def _jobs_below(folder: Path, options: argparse.Namespace) -> Iterator[Job]:
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(folder)
         if _is_wanted(path, inside, options.glob):
-            yield Job(path, path.parent if options.output is None else options.output / inside.parent)
+            parent = path.parent if options.output is None else options.output / inside.parent
+            yield Job(path, parent / name_of_divided(path))
 
 
 def _is_wanted(path: Path, inside: Path, patterns: list[str]) -> bool:

@@ -36,18 +36,22 @@ def load(path: Path) -> list[bpy.types.Object]:
     return sorted(objects.values(), key=lambda obj: obj.name)
 
 
-def target_of(source: Path, folder: Path) -> Path:
-    """Return where the result for a file goes: its format is part of the name if the result has another one."""
+def name_of_divided(source: Path) -> str:
+    """Return what the result of dividing a file is called, in its own format or one that holds more."""
     known = FORMATS.get(source.suffix.lower())
-    suffix = known.output_suffix if known else source.suffix
-    kept = source.suffix.lower() == suffix
-    return folder / f"{source.stem if kept else source.name.replace('.', '_')}_parts{suffix}"
+    return _name_of_result(source, "_parts", known.output_suffix if known else source.suffix)
 
 
-def save(source: Path, target: Path) -> None:
-    """Write what is open now, in the format for its source."""
+def save(target: Path) -> None:
+    """Write what is open now, in the format that the name says."""
     with staged(target) as stage:
-        FORMATS[source.suffix.lower()].write(stage)
+        FORMATS[target.suffix.lower()].write(stage)
+
+
+def _name_of_result(source: Path, ending: str, suffix: str) -> str:
+    """Return a name that no other source has: its format is part of it if the result has another one."""
+    kept = source.suffix.lower() == suffix
+    return f"{source.stem if kept else source.name.replace('.', '_')}{ending}{suffix}"
 
 
 def _read_blend(path: Path) -> None:

@@ -1,10 +1,8 @@
-"""What there is to do: one file and the folder for its result."""
+"""What there is to do: one file and its result."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-
-from .formats import target_of
 
 
 @dataclass(frozen=True)
@@ -15,22 +13,17 @@ class Job:
     ----------
     path : Path
         As the user gave it.
-    folder : Path
-        Where the result goes.
+    target : Path
+        Where the result is written.
     """
 
     path: Path
-    folder: Path
-
-    @property
-    def target(self) -> Path:
-        """Where the result is written."""
-        return target_of(self.path, self.folder)
+    target: Path
 
 
-def jobs_of_files(files: Iterable[Path], output: Path | None) -> list[Job]:
+def jobs_of_files(files: Iterable[Path], output: Path | None, name_of_result: Callable[[Path], str]) -> list[Job]:
     """Return a job for each file; results go beside the files if there is no folder for them."""
-    return [Job(path, output or path.parent) for path in dict.fromkeys(files)]
+    return [Job(path, (output or path.parent) / name_of_result(path)) for path in dict.fromkeys(files)]
 
 
 def in_the_way(jobs: Iterable[Job]) -> dict[Job, Path]:

@@ -92,7 +92,7 @@ class Crew:
 
     def _submit(self, unit: Unit) -> None:
         files = [str(job.path.absolute()) for job in unit.jobs]
-        output = ["--output", str(unit.jobs[0].folder.absolute()), "--json-lines"]
+        output = ["--output", str(unit.jobs[0].target.parent.absolute()), "--json-lines"]
         call = partial(
             subprocess.run,
             [*self.command, *self.arguments, *output, "--", *files],
@@ -180,7 +180,7 @@ def own_command() -> list[str]:
 
 def _units(jobs: Sequence[Job], n_processes: int) -> Iterator[Unit]:
     size = max(1, min(MOST_FILES, int(len(jobs) * SHARE / n_processes)))
-    for _, group in groupby(jobs, key=lambda job: job.folder):
+    for _, group in groupby(jobs, key=lambda job: job.target.parent):
         same_folder = tuple(group)
         yield from (Unit(same_folder[start : start + size]) for start in range(0, len(same_folder), size))
 

@@ -67,7 +67,7 @@ def as_document(reports: list[Report]) -> str:
 
 def sentence(report: Report) -> str:
     """Return what people want to know of a file that went well."""
-    counts = ", ".join(_counts(row) for row in report["objects"] if "parts" in row)
+    counts = ", ".join(_counts(row) for row in report["objects"] if "error" not in row)
     return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}"
 
 

@@ -7,6 +7,7 @@ from typing import TextIO
 
 from ..operators.refusals import Refusal
 from . import batch
+from .formats import name_of_divided
 from .jobs import Job, in_the_way, jobs_of_files
 from .processes import cluster_crew, local_crew
 from .registering import Register
@@ -30,7 +31,7 @@ def carry_out(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
 
 def _run_files(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do the files that were named, tell about each, and return 1 if any failed."""
-    jobs = jobs_of_files(options.files, options.output)
+    jobs = jobs_of_files(options.files, options.output, name_of_divided)
     return _tell(_reports(jobs, options), options, out, err)
 
 

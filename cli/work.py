@@ -57,10 +57,10 @@ def _do(job: Job, command: Command) -> Report:
     report["objects"] = command.open_and_divide(job.path)
     if problems := problems_of(report["objects"]):
         report["error"] = problems
-    if any("parts" in row for row in report["objects"]):
-        job.folder.mkdir(parents=True, exist_ok=True)
+    if any("error" not in row for row in report["objects"]):
+        job.target.parent.mkdir(parents=True, exist_ok=True)
         # Without its report a result counts as unfinished, should anything happen from here on.
         path_beside(job.target).unlink(missing_ok=True)
-        formats.save(job.path, job.target)
+        formats.save(job.target)
         report["output"] = str(job.target)
     return report
