@@ -23,12 +23,13 @@ NOT_BOUND = "Blender's automatic weights found no solution for this mesh; use th
 
 
 class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.Operator):
-    """Build an armature for the parts of the active mesh and bind the mesh to it.
-
-    Other selected meshes with the same faces show where its limbs bend
-    """
+    """Builds an armature for the parts of the active mesh and binds the mesh to it."""
 
     bl_idname = "eigenparts.create_armature"
+    bl_description = (
+        "Build an armature for the parts of the active mesh and bind the mesh to it; "
+        "other selected meshes with the same faces show where its limbs bend"
+    )
     bl_label = "Create Armature"
     bl_options = {"UNDO"}
 

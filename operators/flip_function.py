@@ -10,13 +10,14 @@ from .registration import SHOWN_FUNCTIONS, Wish
 
 
 class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
-    """Register the object again with the other sign of this function, whatever fits better.
-
-    The attribute eigenfunction_1 and those that follow, which Write Eigenfunctions makes, are these functions
-    """
+    """Registers the object again with the other sign of one of the attributes that Write Eigenfunctions makes."""
 
     bl_idname = "eigenparts.flip_function"
     bl_label = "Flip Function"
+    bl_description = (
+        "Register the object again with the other sign of this function, whatever fits better; "
+        "Write Eigenfunctions makes attributes of these functions"
+    )
     bl_options = {"UNDO"}
 
     number: IntProperty(

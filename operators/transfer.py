@@ -94,12 +94,13 @@ class TransferOptions:
 
 
 class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Operator):
-    """Give all selected meshes what the active one has: weights, shape keys, UV maps, colors, materials.
-
-    Pose, resolution and order of the vertices may differ
-    """
+    """Gives all selected meshes what the active one has."""
 
     bl_idname = "eigenparts.transfer"
+    bl_description = (
+        "Give all selected meshes what the active one has: weights, shape keys, UV maps, colors, materials; "
+        "pose, resolution and order of the vertices may differ"
+    )
     bl_label = "Transfer"
     bl_options = {"UNDO"}
 
