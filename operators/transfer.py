@@ -1,6 +1,6 @@
 """Operator: give the selected meshes what the active one has, from weights to materials."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -191,12 +191,20 @@ def _read(context: bpy.types.Context, obj: bpy.types.Object, source: bpy.types.O
             arrays = exchange.read_mesh(mesh)
     except Refusal as refusal:
         raise Refusal(f"{obj.name}: {refusal}") from refusal
+    return body_of(obj, arrays, *_wishes(mesh, source))
+
+
+def body_of(
+    obj: bpy.types.Object, arrays: exchange.MeshArrays, flips: Mapping[int, int] | None = None, alternative: int = 0
+) -> Body:
+    """Return an object in the form that layers are transferred in, with what the user chose of its matchings."""
+    mesh = obj.data
     corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", corners)
     n_corners = exchange.n_corners_of_polygon(mesh)
     polygon = np.repeat(np.arange(len(n_corners)), n_corners)
     vertex = exchange.vertex_of_corner(mesh).astype(np.int64)
-    return Body(obj.name, arrays, corners.reshape(-1, 3).astype(np.int64), vertex, polygon, *_wishes(mesh, source))
+    return Body(obj.name, arrays, corners.reshape(-1, 3).astype(np.int64), vertex, polygon, flips or {}, alternative)
 
 
 def _wishes(mesh: bpy.types.Mesh, source: bpy.types.Object) -> tuple[dict[int, int], int]:
