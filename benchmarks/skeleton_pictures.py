@@ -2,8 +2,8 @@
 
 usage: python -m benchmarks.skeleton_pictures --data DIR --output DIR
 
-Needs Blender as a Python module and matplotlib. Bodies are in the colours of their parts, bones drawn in front as Blender
-draws them. What is not in DIR is left out.
+Needs Blender as a Python module and matplotlib. Bodies are in the colours of their parts, bones drawn in front as
+Blender draws them. What is not in DIR is left out.
 """
 
 import argparse
@@ -25,7 +25,7 @@ PAPER = np.array([0.955, 0.955, 0.955])
 
 @dataclass(frozen=True)
 class Subject:
-    """A mesh to be shown: file below the data folder or None for an example, the turn that puts it upright, the view."""
+    """A mesh to be shown: its file or None for an example, the turn that puts it upright, and the view."""
 
     name: str
     file: str | None

@@ -82,7 +82,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
             labels,
             state.summarize(obj.data).level,
             self.bones_in_limbs,
-            _other_poses(context, arrays),
+            _other_poses(context),
             part_sides.of_reference(obj.data),
             self.needs_weights(),
         )
@@ -138,13 +138,16 @@ def _pairing(skeleton: "engine.Skeleton", partner: np.ndarray | None) -> dict[in
     return {part: (min(part, int(partner[part])), int(side[part])) for part in np.flatnonzero(side).tolist()}
 
 
-def _other_poses(context: bpy.types.Context, arrays: exchange.MeshArrays) -> tuple[np.ndarray, ...]:
+def _other_poses(context: bpy.types.Context) -> tuple[np.ndarray, ...]:
     """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
-    poses = []
-    for obj in context.selected_objects:
-        if obj is context.object or obj.type != "MESH" or obj.mode == "EDIT":
-            continue
-        other = exchange.read_mesh(obj.data)
-        if len(other.vertices) == len(arrays.vertices) and np.array_equal(other.triangles, arrays.triangles):
-            poses.append(other.vertices)
-    return tuple(poses)
+    others = [obj for obj in context.selected_objects if obj is not context.object and obj.type == "MESH"]
+    mesh = context.object.data
+    meshes = [obj.data for obj in others if obj.mode != "EDIT" and _share_faces(obj.data, mesh)]
+    return tuple(exchange.read_mesh(other).vertices for other in meshes)
+
+
+def _share_faces(first: bpy.types.Mesh, second: bpy.types.Mesh) -> bool:
+    # Which diagonal cuts a quad depends on the pose, so triangles are not compared.
+    return len(first.vertices) == len(second.vertices) and all(
+        np.array_equal(read(first), read(second)) for read in (exchange.vertex_of_corner, exchange.polygon_of_triangle)
+    )
