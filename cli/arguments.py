@@ -7,6 +7,8 @@ from pathlib import Path
 from .formats import FORMATS
 
 EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
+# Materials are not among them: they are no numbers that could go from file to file.
+LAYERS = ("groups", "shape_keys", "uvs", "colors", "attributes", "faces", "parts")
 FILE_KINDS = f"Formats: {' '.join(FORMATS)}."
 
 
@@ -15,10 +17,10 @@ def parse(argv: list[str]) -> argparse.Namespace:
     about = "Divide meshes into meaningful parts."
     parser = argparse.ArgumentParser(prog="eigenparts", description=about, epilog=EXIT_CODES)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    for add in (_add_segment, _add_register, _add_batch):
+    for add in (_add_segment, _add_register, _add_transfer, _add_batch):
         add(commands)
     options = parser.parse_args(argv)
-    if options.command == "register" and options.source is None:
+    if options.command in ("register", "transfer") and options.source is None:
         options.source = options.files[0]
     return options
 
@@ -47,6 +49,25 @@ def _add_register(commands: Commands) -> None:
     _add_division(command)
     _add_execution(command)
     command.set_defaults(command="register")
+
+
+def _add_transfer(commands: Commands) -> None:
+    told = "give each mesh what another has: weights, UV maps, shape keys"
+    about = f"Transfer layers of one mesh to each mesh of each file; the results are .blend files. {FILE_KINDS}"
+    command = commands.add_parser("transfer", help=told, description=about)
+    _add_files(command)
+    command.add_argument("--source", metavar="FILE", type=Path, help="file to transfer from; otherwise the first file")
+    _add_reference(command)
+    _add_object(command)
+    command.add_argument(
+        "--layers",
+        metavar="KINDS",
+        type=_layers,
+        default=["groups"],
+        help=f"what is transferred, with commas between: {', '.join(LAYERS)}; groups if not given",
+    )
+    _add_execution(command)
+    command.set_defaults(command="transfer")
 
 
 def _add_batch(commands: Commands) -> None:
@@ -80,8 +101,12 @@ def _add_reference(command: argparse.ArgumentParser) -> None:
     command.add_argument("--mirrored", action="store_true", help="the files are mirror images of the reference")
 
 
-def _add_division(command: argparse.ArgumentParser) -> None:
+def _add_object(command: argparse.ArgumentParser) -> None:
     command.add_argument("--object", metavar="NAME", help="only this object of each file")
+
+
+def _add_division(command: argparse.ArgumentParser) -> None:
+    _add_object(command)
     command.add_argument(
         "--field",
         metavar="F",
@@ -113,6 +138,13 @@ def _add_execution(command: argparse.ArgumentParser) -> None:
         type=shlex.split,
         help="what starts this command line on the machines of the cluster; otherwise the same as here",
     )
+
+
+def _layers(text: str) -> list[str]:
+    kinds = sorted({kind.strip().lower() for kind in text.split(",")})
+    if not set(kinds) <= set(LAYERS):
+        raise argparse.ArgumentTypeError(f"must be some of {', '.join(LAYERS)}")
+    return kinds
 
 
 def _positive(text: str) -> int:

@@ -42,6 +42,11 @@ def name_of_divided(source: Path) -> str:
     return _name_of_result(source, "_parts", known.output_suffix if known else source.suffix)
 
 
+def name_of_transferred(source: Path) -> str:
+    """Return what the result of a transfer to a file is called; only a .blend holds all that can be transferred."""
+    return _name_of_result(source, "_transferred", ".blend")
+
+
 def save(target: Path) -> None:
     """Write what is open now, in the format that the name says."""
     with staged(target) as stage:

@@ -34,6 +34,17 @@ SHARE = 1 / 4
 CLUSTER = 16
 # Seconds to wait for its scheduler.
 PATIENCE = 10
+# What a process is told of the options, besides the layers of a transfer.
+OPTIONS = {
+    "--object": "object",
+    "--field": "field",
+    "--level": "level",
+    "--threshold": "threshold",
+    "--parts": "n_parts",
+    "--mode": "mode",
+    "--source": "source",
+    "--reference": "reference",
+}
 THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -156,18 +167,12 @@ def cluster_crew(options: argparse.Namespace) -> Iterator[Crew]:
 
 def _arguments_of(options: argparse.Namespace) -> list[str]:
     """Return the command and the options that decide what becomes of a file, to give them to another process."""
-    given = {
-        "--object": options.object,
-        "--field": options.field,
-        "--level": options.level,
-        "--threshold": options.threshold,
-        "--parts": options.n_parts,
-        "--mode": options.mode,
-        "--source": options.source and options.source.absolute(),
-        "--reference": options.reference,
-    }
-    arguments = [f"{name}={value}" for name, value in given.items() if value is not None]
-    return ["register" if options.source else "segment", *arguments, *(["--mirrored"] if options.mirrored else [])]
+    command = "transfer" if options.command == "transfer" else "register" if options.source else "segment"
+    given = vars(options) | {"source": options.source and options.source.absolute()}
+    values = {name: given[key] for name, key in OPTIONS.items() if given.get(key) is not None}
+    layers = [f"--layers={','.join(options.layers)}"] if command == "transfer" else []
+    mirrored = ["--mirrored"] if options.mirrored else []
+    return [command, *(f"{name}={value}" for name, value in values.items()), *layers, *mirrored]
 
 
 def own_command() -> list[str]:

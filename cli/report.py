@@ -72,5 +72,7 @@ def sentence(report: Report) -> str:
 
 
 def _counts(row: Report) -> str:
+    if "layers" in row:
+        return f"{row['name']}: {len(row['layers'])} layers ({row['confidence']:.0%} sure)"
     sureness = f" ({row['confidence']:.0%} sure)" if "confidence" in row else ""
     return f"{row['name']}: {len(row['parts'])} parts{sureness}"

@@ -7,13 +7,14 @@ from typing import TextIO
 
 from ..operators.refusals import Refusal
 from . import batch
-from .formats import name_of_divided
+from .formats import name_of_divided, name_of_transferred
 from .jobs import Job, in_the_way, jobs_of_files
 from .processes import cluster_crew, local_crew
 from .registering import Register
 from .report import Report
 from .segmenting import Segment
 from .telling import ProgressLine, teller_for
+from .transferring import Transfer
 from .work import Command, failed, work_here
 
 
@@ -31,7 +32,8 @@ def carry_out(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
 
 def _run_files(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do the files that were named, tell about each, and return 1 if any failed."""
-    jobs = jobs_of_files(options.files, options.output, name_of_divided)
+    name_of_result = name_of_transferred if options.command == "transfer" else name_of_divided
+    jobs = jobs_of_files(options.files, options.output, name_of_result)
     return _tell(_reports(jobs, options), options, out, err)
 
 
@@ -72,4 +74,6 @@ def _reports(jobs: list[Job], options: argparse.Namespace) -> Iterator[Report]:
 
 
 def _command(options: argparse.Namespace) -> Command:
+    if options.command == "transfer":
+        return Transfer(options)
     return Register(options) if options.source else Segment(options)

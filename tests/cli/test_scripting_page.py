@@ -35,7 +35,7 @@ def test_the_report_on_the_page_keeps_the_schema():
     assert list(SCHEMA.iter_errors(json.loads(example))) == []
 
 
-@pytest.mark.parametrize("command", ["segment", "register", "batch"])
+@pytest.mark.parametrize("command", ["segment", "register", "transfer", "batch"])
 def test_every_option_is_on_the_page(run, command):
     _, lines, _ = run(command, "--help")
     options = set(re.findall(r"--[a-z-]+", "\n".join(lines))) - {"--help"}

@@ -1,0 +1,40 @@
+"""The command ``transfer``: what one mesh has, on the meshes of other files."""
+
+import bpy
+import numpy as np
+import pytest
+
+from tests.cli.files import add_object, turned, write_blend, write_off
+from tests.compute.registration.shapes import lumpy_ball
+
+
+@pytest.fixture
+def weighted(tmp_path):
+    """A file with a lumpy ball whose weight is its height."""
+    ball = lumpy_ball(2)
+    obj = add_object(ball, "weighted")
+    group = obj.vertex_groups.new(name="High")
+    for vertex, height in enumerate(ball.vertices[:, 2].tolist()):
+        group.add([vertex], max(0.0, min(1.0, 0.5 + 0.4 * height)), "REPLACE")
+    return write_blend(tmp_path / "weighted.blend")
+
+
+def test_weights_go_to_a_turned_and_shuffled_copy(run, weighted, tmp_path):
+    copy = turned(lumpy_ball(2))
+    code, report, errors = run("transfer", write_off(copy, tmp_path / "copy.off"), "--source", weighted, "--json")
+    (row,) = report["files"][0]["objects"]
+    assert (code, errors, row["layers"], row["source"]) == (0, [], ["High"], "weighted")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "copy_off_transferred.blend"))
+    obj = bpy.data.objects["copy"]
+    # The copy is turned about the axis along which the weights grow.
+    wanted = np.clip(0.5 + 0.4 * copy.vertices[:, 2], 0, 1)
+    found = [sum(group.weight for group in vertex.groups) for vertex in obj.data.vertices]
+    assert np.abs(wanted - found).max() < 0.01
+
+
+def test_what_the_source_does_not_have_is_an_error(run, weighted, tmp_path):
+    copy = write_off(turned(lumpy_ball(2)), tmp_path / "copy.off")
+    code, _, errors = run("transfer", copy, "--source", weighted, "--layers", "uvs")
+    assert (code, len(errors)) == (1, 1)
+    assert "none of the layers" in errors[0]
+    assert run("transfer", copy, "--source", weighted, "--layers", "dreams")[0] == 2
