@@ -94,9 +94,11 @@ def _read_source(options: argparse.Namespace) -> Source:
     obj = chosen(formats.load(options.source), options.reference)[0]
     layers = read_layers(obj, Choice(frozenset(kind.upper() for kind in options.layers), "ALL", (), options.mirrored))
     highest = max((int(layer.values.max(initial=0)) for layer in layers if layer.kind == PARTS), default=0)
-    return Source(
-        obj.name, body_of(obj, exchange.read_mesh(obj.data)), layers, part_table.colours(obj.data, highest + 1)
-    )
+    return Source(obj.name, _body(obj), layers, part_table.colours(obj.data, highest + 1))
+
+
+def _body(obj: bpy.types.Object) -> Body:
+    return body_of(obj, exchange.read_mesh(obj.data))
 
 
 def _row(obj: bpy.types.Object, source: Source, result: Transferred) -> Report:
