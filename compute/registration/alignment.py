@@ -45,8 +45,8 @@ class Round:
     bend: float
 
 
-# No joints first, since they would appear wherever the rough map is wrong; then stiff, so that limbs do not twist; in the
-# end soft, so that the surfaces touch. Chosen on pairs of seven families of posed characters.
+# No joints first, since they would appear wherever the rough map is wrong; then stiff, so that limbs do not twist; soft
+# in the end, so that the surfaces touch. Chosen on pairs of seven families of posed characters.
 ROUNDS = (
     *(Round(0.3, np.inf),) * 5,
     *(Round(1.0, 0.1),) * 12,

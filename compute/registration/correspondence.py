@@ -22,13 +22,14 @@ from .alignment import CANDIDATES, TURN, aligned
 from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
 from .dense import DENSE_SAMPLES, dense_map
 from .matching import Matching, match_surfaces
-from .renumbering import renumbering
+from .renumbering import may_be_renumbered, renumbering
 from .spectral_shape import SpectralShape, farthest_points, spectral_shape
 from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles, unit_rows
 from .zoomout import nearest_rows
 
-# Nodes of the deformation, and points that are laid onto the target.
+# Nodes of the deformation, each for at least so many points, and points that are laid onto the target.
 N_NODES = 600
+POINTS_OF_NODE = 4
 N_SAMPLES = 2000
 # When the shapes lie on one another: candidates for the nearest point, and what a turn of the normal and a wrong side
 # count as, on a surface of area 1.
@@ -180,18 +181,21 @@ def _any_triangle(triangles: Ints, n_vertices: int) -> tuple[Ints, Ints]:
 
 
 def _by_shape(pair: _Pair, progress: Progress) -> Correspondence:
-    tree = SurfaceTree(_laid_onto(pair, section(progress, 0.0, 0.8)), pair.here.triangles, LANDING_TURN, WRONG_SIDE)
-    progress(0.8, "Finding the nearest points")
+    progress(0.0, "Mapping functions")
     row, is_analyzed = _rows(pair.target, pair.there)
-    net_points, gaps = tree.nearest(pair.there.positions[row], pair.there.normals[row], LANDING_CANDIDATES)
-    found = _on_input(pair, net_points)
-    progress(0.9, "Comparing the faces")
-    image = _same_faces(pair, found, gaps)
+    samples = farthest_points(pair.here.positions, DENSE_SAMPLES)
+    grown = dense_map(pair.here, pair.there, pair.matching, samples)
+    progress(0.2, "Comparing the faces")
+    image = _same_faces(pair, grown, row)
     if image is not None:
         return _by_faces(pair, image, is_analyzed)
+    laid = _laid_onto(pair, samples, _rough_places(pair, samples, grown), section(progress, 0.2, 0.8))
+    progress(0.8, "Finding the nearest points")
+    tree = SurfaceTree(laid, pair.here.triangles, LANDING_TURN, WRONG_SIDE)
+    net_points, gaps = tree.nearest(pair.there.positions[row], pair.there.normals[row], LANDING_CANDIDATES)
+    found = _on_input(pair, net_points)
     confidence = np.where(is_analyzed, _confidence(pair, found, gaps, row), 0.0)
-    middles = _middles(pair, tree, row)
-    return _correspondence(pair, found, middles, confidence, BY_SHAPE)
+    return _correspondence(pair, found, _middles(pair, tree, row), confidence, BY_SHAPE)
 
 
 def _correspondence(pair: _Pair, found: SurfacePoints, middles: Ints, confidence: Floats, how: str) -> Correspondence:
@@ -202,30 +206,28 @@ def _correspondence(pair: _Pair, found: SurfacePoints, middles: Ints, confidence
     )
 
 
-def _laid_onto(pair: _Pair, progress: Progress) -> Floats:
+def _laid_onto(pair: _Pair, samples: Ints, places: Floats, progress: Progress) -> Floats:
     """Return (n, 3) where the points of the source's shape lie when it is bent onto the target."""
     here, there = pair.here, pair.there
-    progress(0.0, "Mapping functions")
-    samples, places = _rough_map(pair)
-    progress(0.3, "Laying one shape onto the other")
-    graph = deformation_graph(here, N_NODES)
+    graph = deformation_graph(here, min(N_NODES, len(here.positions) // POINTS_OF_NODE))
     tree = SurfaceTree(there.positions, there.triangles, TURN, WRONG_SIDE)
     motion = _first_motion(graph, samples, places)
     chosen = samples[:N_SAMPLES]
     surface = (there.positions, there.normals, there.triangles)
-    motion = aligned(graph, motion, chosen, here.normals[chosen], tree, surface, section(progress, 0.3, 1.0))
-    return warped(graph, motion)
+    return warped(graph, aligned(graph, motion, chosen, here.normals[chosen], tree, surface, progress))
 
 
-def _rough_map(pair: _Pair) -> tuple[Ints, Floats]:
-    """Return samples of the source, and where on the target the functional map has them."""
-    here, there = pair.here, pair.there
-    samples = farthest_points(here.positions, DENSE_SAMPLES)
-    grown = dense_map(here, there, pair.matching, samples)
+def _rough_places(pair: _Pair, samples: Ints, grown: Floats) -> Floats:
+    """Return where on the target the functional map has samples of the source."""
+    others = farthest_points(pair.there.positions, DENSE_SAMPLES)
+    here, there = _embeddings(pair, samples, others, grown)
+    return pair.there.positions[others[nearest_rows(here, there)]]
+
+
+def _embeddings(pair: _Pair, here: Ints, there: Ints, grown: Floats) -> tuple[Floats, Floats]:
+    """Return points of both shapes in the space where the functional map makes them comparable."""
     n_target, n_source = grown.shape
-    others = farthest_points(there.positions, DENSE_SAMPLES)
-    nearest = nearest_rows(here.functions[samples, :n_source] @ grown.T, there.functions[others, :n_target])
-    return samples, there.positions[others[nearest]]
+    return pair.here.functions[here, :n_source] @ grown.T, pair.there.functions[there, :n_target]
 
 
 def _first_motion(graph: DeformationGraph, samples: Ints, places: Floats) -> Motion:
@@ -295,15 +297,18 @@ def _lengths(positions: Floats, ends: Ints) -> Floats:
     return np.linalg.norm(positions[ends[:, 0]] - positions[ends[:, 1]], axis=1)
 
 
-def _same_faces(pair: _Pair, found: SurfacePoints, gaps: Floats) -> Ints | None:
+def _same_faces(pair: _Pair, grown: Floats, row: Ints) -> Ints | None:
     """Return (Vt,) the source's vertex that each analyzed vertex is, if the faces are the same; None otherwise."""
-    source, target = pair.source.surface, pair.target.surface
-    here, there = _wound(source), _wound(target)
+    here, there = _wound(pair.source.surface), _wound(pair.target.surface)
+    if not may_be_renumbered(here, there):
+        return None
     if pair.matching.mirrored:
         here = here[:, ::-1]
-    guess = source.vertex_of_input[_nearest_corner(found, pair.source.mesh.triangles)]
-    order = np.argsort(gaps[there].max(axis=1), kind="stable")
-    return renumbering(here, there, len(source.vertex_of_input), len(target.vertex_of_input), guess, order)
+    source_row, is_vertex = _rows(pair.source, pair.here)
+    vertices = np.flatnonzero(is_vertex)
+    rows, places = _embeddings(pair, source_row[vertices], row, grown)
+    guess = pair.source.surface.vertex_of_input[vertices[nearest_rows(places, rows)]]
+    return renumbering(here, there, len(source_row), len(row), guess)
 
 
 def _wound(surface: Surface) -> Ints:

@@ -33,7 +33,12 @@ class _Sides:
         return np.where(self.keys[place] == wanted, self.opposite[place], -1)
 
 
-def renumbering(source: Ints, target: Ints, n_source: int, n_target: int, guess: Ints, order: Ints) -> Ints | None:
+def may_be_renumbered(source: Ints, target: Ints) -> bool:
+    """Whether triangles are as many, around vertices of the same valences, so that a closer look is worth it."""
+    return len(source) == len(target) and _valences(source) == _valences(target)
+
+
+def renumbering(source: Ints, target: Ints, n_source: int, n_target: int, guess: Ints) -> Ints | None:
     """Return for each target vertex the source vertex that it is under another number; None if the faces differ.
 
     Parameters
@@ -44,22 +49,19 @@ def renumbering(source: Ints, target: Ints, n_source: int, n_target: int, guess:
         Numbers of vertices.
     guess : (n_target,) int64
         The source vertex that each may be; one triangle where it is right is enough.
-    order : (T,) int64
-        Triangles of the target, those where the guess is trusted most first.
 
     Returns
     -------
     (n_target,) int64 or None
         -1 for vertices without triangles.
     """
-    if len(source) != len(target) or _valences(source) != _valences(target):
-        return None
     here, there = _sides(source, n_source), _sides(target, n_target)
     if here is None or there is None:
         return None
-    corners = guess[target[order]]
-    fits = here.find(corners[:, 0], corners[:, 1]) == corners[:, 2]
-    for seed in order[fits][:MOST_SEEDS].tolist():
+    corners = guess[target]
+    fits = np.flatnonzero(here.find(corners[:, 0], corners[:, 1]) == corners[:, 2])
+    # Spread over the surface, as the guess is wrong in whole regions.
+    for seed in fits[:: max(1, len(fits) // MOST_SEEDS)].tolist():
         image = _grown(here, there, target[seed], guess[target[seed]])
         if image is not None and _is_complete(image, source, target):
             return image

@@ -9,35 +9,28 @@ from tests.blender.conftest import add_object, values_of
 from tests.compute.registration.shapes import lumpy_ball
 
 
-@pytest.fixture(scope="module")
-def character():
-    return hand(1500)
-
-
-def add_pose(character, pose, seed=None):
-    """Add the hand in a pose; with a seed, its vertices and faces in random order."""
-    vertices, quads = character.mesh_in_pose(pose), character.quads
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-    order, faces = np.arange(len(vertices)), np.arange(len(triangles))
-    if seed is not None:
-        random = np.random.default_rng(seed)
-        order, faces = random.permutation(len(vertices)), random.permutation(len(triangles))
-        vertices, triangles = vertices[order], np.argsort(order)[triangles][faces]
-    obj = add_object(vertices, triangles, pose)
+def add_copy(name, seed, bend=0.0):
+    """Add the lumpy ball, bent, with its vertices and faces in random order."""
+    ball = lumpy_ball(2)
+    random = np.random.default_rng(seed)
+    order, faces = random.permutation(len(ball.vertices)), random.permutation(len(ball.triangles))
+    vertices = ball.vertices + bend * np.sin(ball.vertices[:, [1, 2, 0]])
+    obj = add_object(vertices[order], np.argsort(order)[ball.triangles][faces], name)
     obj["order"], obj["faces"] = order.tolist(), faces.tolist()
     return obj
 
 
 @pytest.fixture
-def fist(character):
-    """The target: shuffled, so that nothing corresponds by number."""
-    return add_pose(character, "fist", seed=0)
+def bent():
+    """The target: another pose, shuffled, so that nothing corresponds by number."""
+    return add_copy("bent", seed=0, bend=0.1)
 
 
 @pytest.fixture
-def rest(fist, character):
+def rest(bent):
     """The source, active, with something of every kind."""
-    obj = add_pose(character, "rest")
+    ball = lumpy_ball(2)
+    obj = add_object(ball.vertices, ball.triangles, "rest")
     mesh, n = obj.data, len(obj.data.vertices)
     heights = mesh_positions(mesh)[:, 2]
     share = (heights - heights.min()) / np.ptp(heights)
@@ -74,22 +67,23 @@ def balls():
     return add_lumpy(3, "fine", 2.0), add_lumpy(2, "coarse")
 
 
-def test_weights_go_to_the_same_vertices_under_other_numbers(rest, fist):
+def test_weights_go_to_the_same_vertices_under_other_numbers(rest, bent):
     bpy.ops.eigenparts.transfer(layers={"GROUPS"})
-    order = np.array(fist["order"])
+    order = np.array(bent["order"])
     for name in ("Upper", "Lower"):
-        np.testing.assert_allclose(weights_of(fist, name), weights_of(rest, name)[order], atol=1e-4)
+        np.testing.assert_allclose(weights_of(bent, name), weights_of(rest, name)[order], atol=1e-4)
 
 
-def test_poses_with_the_same_faces_correspond_by_number(character):
+def test_poses_with_the_same_faces_correspond_by_number():
     """Also where Blender splits a quad one way in one pose and the other way in the other."""
-    fist, rest = (add_object(character.mesh_in_pose(pose), character.quads, pose) for pose in ("fist", "rest"))
+    character = hand(800)
+    bent, rest = (add_object(character.mesh_in_pose(pose), character.quads, pose) for pose in ("fist", "rest"))
     numbers = np.arange(len(character.quads), dtype=np.int32)
     rest.data.attributes.new("face", "INT", "FACE").data.foreach_set("value", numbers)
     rest.vertex_groups.new(name="Odd").add(list(range(1, len(rest.data.vertices), 2)), 0.5, "REPLACE")
     bpy.ops.eigenparts.transfer(layers={"GROUPS", "FACES"})
-    np.testing.assert_array_equal(values_of(fist.data, "face"), numbers)
-    np.testing.assert_array_equal(weights_of(fist, "Odd"), weights_of(rest, "Odd"))
+    np.testing.assert_array_equal(values_of(bent.data, "face"), numbers)
+    np.testing.assert_array_equal(weights_of(bent, "Odd"), weights_of(rest, "Odd"))
 
 
 def test_weights_of_each_vertex_have_the_sum_they_had(balls):
@@ -115,16 +109,16 @@ def test_a_linear_attribute_is_its_value_at_the_place(balls):
     assert away.max() < 0.5
 
 
-def test_attributes_of_every_kind_come_along(rest, fist):
+def test_attributes_of_every_kind_come_along(rest, bent):
     bpy.ops.eigenparts.transfer(layers={"ATTRIBUTES", "FACES", "COLORS"})
-    order, faces = np.array(fist["order"]), np.array(fist["faces"])
-    np.testing.assert_array_equal(values_of(fist.data, "number"), order)
-    np.testing.assert_array_equal(values_of(fist.data, "face"), faces)
-    paint = [values_of(obj.data, "paint", 4, np.float32, "color") for obj in (rest, fist)]
+    order, faces = np.array(bent["order"]), np.array(bent["faces"])
+    np.testing.assert_array_equal(values_of(bent.data, "number"), order)
+    np.testing.assert_array_equal(values_of(bent.data, "face"), faces)
+    paint = [values_of(obj.data, "paint", 4, np.float32, "color") for obj in (rest, bent)]
     np.testing.assert_allclose(paint[1], paint[0][order], atol=1e-5)
 
 
-def test_the_source_stays_as_it_is(rest, fist):
+def test_the_source_stays_as_it_is(rest, bent):
     names, weights = sorted(attribute.name for attribute in rest.data.attributes), weights_of(rest, "Upper")
     bpy.ops.eigenparts.transfer(layers={"GROUPS", "ATTRIBUTES", "FACES", "COLORS"})
     assert sorted(attribute.name for attribute in rest.data.attributes) == names
@@ -165,49 +159,49 @@ def test_shape_keys_are_turned_with_the_surface(balls):
     np.testing.assert_allclose(np.median(delta, axis=0), 2 * turn @ [0.25, 0, 0], atol=0.05)
 
 
-def test_materials_and_parts_come_along(rest, fist):
+def test_materials_and_parts_come_along(rest, bent):
     for name in ("Skin", "Glove"):
         rest.data.materials.append(bpy.data.materials.new(name))
-    fist.data.materials.append(bpy.data.materials["Glove"])
+    bent.data.materials.append(bpy.data.materials["Glove"])
     index = (np.arange(len(rest.data.polygons)) % 2).astype(np.int32)
     rest.data.polygons.foreach_set("material_index", index)
     bpy.ops.eigenparts.analyze()
     bpy.ops.eigenparts.transfer(layers={"MATERIALS", "PARTS"})
-    faces = np.array(fist["faces"])
-    names = np.array([material.name for material in fist.data.materials])
+    faces = np.array(bent["faces"])
+    names = np.array([material.name for material in bent.data.materials])
     assert sorted(names) == ["Glove", "Skin"]
     expected = np.array(["Skin", "Glove"])[index][faces]
-    np.testing.assert_array_equal(names[values_of(fist.data, "material_index")], expected)
-    np.testing.assert_array_equal(values_of(fist.data, "part"), values_of(rest.data, "part")[faces])
+    np.testing.assert_array_equal(names[values_of(bent.data, "material_index")], expected)
+    np.testing.assert_array_equal(values_of(bent.data, "part"), values_of(rest.data, "part")[faces])
 
 
-def test_a_mask_and_a_factor_limit_what_changes(rest, fist):
-    height = fist.data.attributes.new("height", "FLOAT", "POINT")
-    height.data.foreach_set("value", np.full(len(fist.data.vertices), 7, dtype=np.float32))
-    mask = fist.vertex_groups.new(name="Here")
+def test_a_mask_and_a_factor_limit_what_changes(rest, bent):
+    height = bent.data.attributes.new("height", "FLOAT", "POINT")
+    height.data.foreach_set("value", np.full(len(bent.data.vertices), 7, dtype=np.float32))
+    mask = bent.vertex_groups.new(name="Here")
     mask.add([0, 1, 2], 1.0, "REPLACE")
     bpy.ops.eigenparts.transfer(layers={"ATTRIBUTES"}, factor=0.5, mask="Here")
-    found, source = values_of(fist.data, "height", 1, np.float32), values_of(rest.data, "height", 1, np.float32)
+    found, source = values_of(bent.data, "height", 1, np.float32), values_of(rest.data, "height", 1, np.float32)
     assert (found[3:] == 7).all()
-    np.testing.assert_allclose(found[:3], (7 + source[np.array(fist["order"])[:3]]) / 2, rtol=1e-5)
+    np.testing.assert_allclose(found[:3], (7 + source[np.array(bent["order"])[:3]]) / 2, rtol=1e-5)
 
 
-def test_a_mirrored_mesh_gets_swapped_names(rest, fist):
-    fist.data.transform([[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-    fist.data.flip_normals()
+def test_a_mirrored_mesh_gets_swapped_names(rest, bent):
+    bent.data.transform([[-1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    bent.data.flip_normals()
     rest.vertex_groups["Upper"].name = "Upper.L"
     bpy.ops.eigenparts.transfer(layers={"GROUPS"}, mirrored=True)
-    assert "Upper.L" not in fist.vertex_groups
-    expected = weights_of(rest, "Upper.L")[np.array(fist["order"])]
-    assert np.abs(weights_of(fist, "Upper.R") - expected).mean() < 0.02
+    assert "Upper.L" not in bent.vertex_groups
+    expected = weights_of(rest, "Upper.L")[np.array(bent["order"])]
+    assert np.abs(weights_of(bent, "Upper.R") - expected).mean() < 0.02
 
 
-def test_named_groups_only(rest, fist):
+def test_named_groups_only(rest, bent):
     bpy.ops.eigenparts.transfer(layers={"GROUPS"}, groups="NAMED", group_names="Lower")
-    assert [group.name for group in fist.vertex_groups] == ["Lower"]
+    assert [group.name for group in bent.vertex_groups] == ["Lower"]
 
 
-def test_groups_of_deform_bones_only(rest, fist):
+def test_groups_of_deform_bones_only(rest, bent):
     armature = bpy.data.armatures.new("rig")
     rig = bpy.data.objects.new("rig", armature)
     bpy.context.collection.objects.link(rig)
@@ -221,36 +215,36 @@ def test_groups_of_deform_bones_only(rest, fist):
     rest.modifiers.new("rig", "ARMATURE").object = rig
     rig.select_set(False)
     bpy.ops.eigenparts.transfer(layers={"GROUPS"}, groups="DEFORM")
-    assert [group.name for group in fist.vertex_groups] == ["Upper"]
+    assert [group.name for group in bent.vertex_groups] == ["Upper"]
 
 
-def test_several_targets_at_once(rest, fist, character):
-    other = add_pose(character, "spread", seed=3) if "spread" in character.poses else add_pose(character, "fist", 3)
+def test_several_targets_at_once(rest, bent):
+    other = add_copy("other", seed=3, bend=0.05)
     bpy.context.view_layer.objects.active = rest
     bpy.ops.eigenparts.transfer(layers={"GROUPS"})
-    for obj in (fist, other):
+    for obj in (bent, other):
         np.testing.assert_allclose(
             weights_of(obj, "Upper"), weights_of(rest, "Upper")[np.array(obj["order"])], atol=1e-4
         )
 
 
-def test_unsure_vertices_are_selected(rest, fist):
-    fist.data.vertices.foreach_set("select", np.ones(len(fist.data.vertices), dtype=bool))
+def test_unsure_vertices_are_selected(rest, bent):
+    bent.data.vertices.foreach_set("select", np.ones(len(bent.data.vertices), dtype=bool))
     bpy.ops.eigenparts.transfer(layers={"GROUPS"}, selects_unsure=True)
-    assert not any(vertex.select for vertex in fist.data.vertices)
+    assert not any(vertex.select for vertex in bent.data.vertices)
 
 
-def test_one_undo_takes_everything_back(rest, fist):
+def test_one_undo_takes_everything_back(rest, bent):
     window = bpy.context.window_manager.windows[0]
     with bpy.context.temp_override(window=window, screen=window.screen):
         bpy.ops.ed.undo_push(message="before")
         bpy.ops.eigenparts.transfer(layers={"GROUPS", "FACES"})
-        assert fist.vertex_groups
+        assert bent.vertex_groups
         bpy.ops.ed.undo_push(message="transferred")
         bpy.ops.ed.undo()
-    fist = bpy.data.objects["fist"]
-    assert not fist.vertex_groups
-    assert "face" not in fist.data.attributes
+    bent = bpy.data.objects["bent"]
+    assert not bent.vertex_groups
+    assert "face" not in bent.data.attributes
 
 
 def refused(match, **options):
@@ -271,57 +265,57 @@ def state_of(obj):
     )
 
 
-def test_a_locked_group_is_refused(rest, fist):
-    fist.vertex_groups.new(name="Lower").lock_weight = True
-    refused(r'fist: The vertex group "Lower" is locked', layers={"GROUPS", "FACES"})
+def test_a_locked_group_is_refused(rest, bent):
+    bent.vertex_groups.new(name="Lower").lock_weight = True
+    refused(r'bent: The vertex group "Lower" is locked', layers={"GROUPS", "FACES"})
 
 
-def test_an_attribute_of_another_kind_is_refused(rest, fist):
-    fist.data.attributes.new("number", "FLOAT", "FACE")
-    refused(r'fist: There is an attribute "number" of another kind', layers={"GROUPS", "ATTRIBUTES"})
+def test_an_attribute_of_another_kind_is_refused(rest, bent):
+    bent.data.attributes.new("number", "FLOAT", "FACE")
+    refused(r'bent: There is an attribute "number" of another kind', layers={"GROUPS", "ATTRIBUTES"})
 
 
-def test_a_target_without_a_basis_is_refused(rest, fist):
+def test_a_target_without_a_basis_is_refused(rest, bent):
     rest.shape_key_add(name="Basis")
     rest.shape_key_add(name="Push")
-    refused("fist: The mesh has no Basis", layers={"GROUPS", "SHAPE_KEYS"})
+    refused("bent: The mesh has no Basis", layers={"GROUPS", "SHAPE_KEYS"})
 
 
-def test_a_missing_mask_is_refused(rest, fist):
-    refused('fist: There is no vertex group "Here"', layers={"GROUPS"}, mask="Here")
+def test_a_missing_mask_is_refused(rest, bent):
+    refused('bent: There is no vertex group "Here"', layers={"GROUPS"}, mask="Here")
 
 
-def test_nothing_to_transfer_is_refused(rest, fist):
+def test_nothing_to_transfer_is_refused(rest, bent):
     refused("rest has none of the layers", layers={"UVS"})
     refused("at least one layer", layers=set())
 
 
-def test_deform_groups_without_an_armature_are_refused(rest, fist):
+def test_deform_groups_without_an_armature_are_refused(rest, bent):
     refused("rest has no armature", layers={"GROUPS"}, groups="DEFORM")
 
 
-def test_shapes_that_do_not_match_are_refused(rest, fist):
+def test_shapes_that_do_not_match_are_refused(rest, bent):
     ring = bpy.ops.mesh.primitive_torus_add(major_segments=40, minor_segments=20)
     assert ring == {"FINISHED"}
-    fist.select_set(False)
+    bent.select_set(False)
     rest.select_set(True)
     bpy.context.view_layer.objects.active = rest
     refused("not alike enough", layers={"GROUPS"})
 
 
-def test_linked_meshes_are_refused(rest, fist, tmp_path):
-    path = str(tmp_path / "fist.blend")
-    bpy.data.libraries.write(path, {fist})
+def test_linked_meshes_are_refused(rest, bent, tmp_path):
+    path = str(tmp_path / "bent.blend")
+    bpy.data.libraries.write(path, {bent})
     with bpy.data.libraries.load(path, link=True) as (_, into):
-        into.objects = ["fist"]
+        into.objects = ["bent"]
     linked = into.objects[0]
     bpy.context.collection.objects.link(linked)
-    fist.select_set(False)
+    bent.select_set(False)
     linked.select_set(True)
     refused("linked from another file", layers={"GROUPS"})
 
 
-def test_without_a_target_it_is_told(rest, fist):
-    fist.select_set(False)
+def test_without_a_target_it_is_told(rest, bent):
+    bent.select_set(False)
     with pytest.raises(RuntimeError, match="Select the meshes to transfer to"):
         bpy.ops.eigenparts.transfer()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compute import MeshError
-from compute.geodesics import smoothed, softened_labels, stiffness
+from compute.geodesics import harmonic_fill, smoothed, softened_labels, stiffness
 from tests.shapes import icosphere, joined, rectangle
 
 
@@ -61,3 +61,29 @@ def test_a_width_that_is_no_distance_is_refused(width):
     mesh = icosphere(1)
     with pytest.raises(MeshError, match="distance"):
         smoothed(mesh, mesh.vertices, width)
+
+
+def test_a_harmonic_fill_of_a_strip_is_linear():
+    strip = rectangle(10, 1, width=10.0)
+    x = strip.vertices[:, :1]
+    is_known = (x[:, 0] < 0.5) | (x[:, 0] > 9.5)
+    filled = harmonic_fill(strip, np.where(is_known[:, None], x, -5.0), is_known)
+    np.testing.assert_allclose(filled, x, atol=0.2)
+    np.testing.assert_array_equal(filled[is_known], x[is_known])
+
+
+def test_a_harmonic_fill_keeps_constants_and_stays_between_what_is_known():
+    sphere = icosphere(2)
+    is_known = np.arange(len(sphere.vertices)) % 5 == 0
+    values = np.column_stack([np.full(len(is_known), 3.0), np.random.default_rng(0).random(len(is_known))])
+    filled = harmonic_fill(sphere, values, is_known)
+    np.testing.assert_allclose(filled[:, 0], 3, rtol=1e-12)
+    assert values[is_known, 1].min() <= filled[:, 1].min() <= filled[:, 1].max() <= values[is_known, 1].max()
+
+
+def test_a_piece_without_anything_known_keeps_what_it_has():
+    both = joined(icosphere(0), icosphere(0))
+    values = np.arange(24.0)[:, None]
+    filled = harmonic_fill(both, values, np.arange(24) == 3)
+    np.testing.assert_array_equal(filled[12:], values[12:])
+    np.testing.assert_allclose(filled[:12], 3)
