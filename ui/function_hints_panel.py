@@ -1,6 +1,7 @@
 """Sidebar: which eigenfunctions suit the active mesh, where one of them is chosen as the field."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import function_hints
 from .tab import EigenpartsPanel
@@ -19,7 +20,9 @@ class EIGENPARTS_PT_function_hints(EigenpartsPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
         for number, n_held, n_protrusions in function_hints.read(context.object.data)[: function_hints.MOST_SHOWN]:
-            text = f"{number}: {n_held} of {n_protrusions} protrusions"
+            text = translated("{number}: {held} of {all} protrusions").format(
+                number=number, held=n_held, all=n_protrusions
+            )
             choose = column.operator("wm.context_set_int", text=text, translate=False)
             choose.data_path, choose.value = "scene.eigenparts.eigenfunction", number
 

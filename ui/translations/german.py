@@ -253,6 +253,7 @@ GERMAN: dict[str, str] = {
     "Outline Active Part": "Aktives Teil umranden",
     "Draw a line around the part that was clicked in the list": "Eine Linie um das in der Liste angeklickte Teil zeichnen",
     "Selects and outlines the part": "Wählt das Teil aus und umrandet es",
+    "{number}: {held} of {all} protrusions": "{number}: {held} von {all} Vorsprüngen",
     "Eigenfunctions That Suit": "Passende Eigenfunktionen",
     "Name of the mesh that has the problem": "Name des Netzes mit dem Problem",
     "Build an armature for the parts of the active mesh and bind the mesh to it; other selected meshes with the same faces show where its limbs bend": "Eine Armatur für die Teile des aktiven Netzes bauen und das Netz daran binden; andere ausgewählte Netze mit gleichen Flächen zeigen, wo sich seine Glieder beugen",
