@@ -7,8 +7,9 @@ from .arc_tree import ArcTree
 from .faces import sum_by
 from .necks import LEAST_HEIGHT
 
-# An inner part is worth keeping if its border is a neck: shorter than this fraction of its longest level set.
-NECK = 0.7
+# An inner part is worth keeping if its border is a neck: shorter than this fraction of the longest level sets on its
+# two sides (their geometric mean).
+NECK = 0.81
 # And if it has at least this fraction of the area of the whole.
 LEAST_AREA = 0.05
 # A feature is worth a part if it stands out: all its level sets have less than this length²/area. A hemisphere has
@@ -71,24 +72,44 @@ def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
     """Tell which of the cut arcs (A,) end something that is worth a part."""
     is_cut = candidates.copy()
     height, longest, inside = tree.height.copy(), tree.longest.copy(), area.copy()
+    border = tree.closing_length.copy()
     has_cut_inside = np.zeros(len(area), dtype=bool)
     last: dict[int, int] = {}
-    for arc, (part, parent) in enumerate(zip(tree.part.tolist(), tree.parent.tolist(), strict=True)):
-        # What has gathered on the way from the last cut.
-        previous = last.get(part)
-        if previous is not None and not is_cut[previous]:
-            height[arc] += height[previous]
-            longest[arc] = max(longest[arc], longest[previous])
-            inside[arc] += inside[previous]
-        last[part] = arc
-        if is_cut[arc] and has_cut_inside[arc]:
-            is_neck = tree.closing_length[arc] < NECK * longest[arc]
-            is_cut[arc] = is_neck and height[arc] > LEAST_HEIGHT and inside[arc] > LEAST_AREA
-        elif is_cut[arc]:
-            is_cut[arc] = tree.roundness[arc] < BLUNT
-        if parent >= 0:
-            has_cut_inside[parent] |= has_cut_inside[arc] or is_cut[arc]
+    for parent, meeting in _meeting_arcs(tree.parent):
+        for arc in meeting:
+            # What has gathered on the way from the last cut.
+            previous = last.get(int(tree.part[arc]))
+            if previous is not None and not is_cut[previous]:
+                height[arc] += height[previous]
+                longest[arc] = max(longest[arc], longest[previous])
+                inside[arc] += inside[previous]
+                # A thin shell was not measured; it ends nearly where it begins.
+                border[arc] = border[arc] or border[previous]
+            last[int(tree.part[arc])] = arc
+        for arc in [arc for arc in meeting if is_cut[arc]]:
+            if has_cut_inside[arc]:
+                is_neck = _narrowing(border, longest, arc, meeting) < NECK
+                is_cut[arc] = is_neck and height[arc] > LEAST_HEIGHT and inside[arc] > LEAST_AREA
+            else:
+                is_cut[arc] = tree.roundness[arc] < BLUNT
+        has_cut_inside[parent] = (has_cut_inside | is_cut)[meeting].any()
     return _with_a_body(tree, is_cut, is_cut & has_cut_inside, area)
+
+
+def _meeting_arcs(parent: Ints) -> list[tuple[int, list[int]]]:
+    """Return for each arc that others end at which these are; whatever is inside comes before."""
+    meeting: dict[int, list[int]] = {}
+    for arc, end in enumerate(parent.tolist()):
+        if end >= 0:
+            meeting.setdefault(end, []).append(arc)
+    return sorted(meeting.items())
+
+
+def _narrowing(border: Floats, longest: Floats, arc: int, meeting: list[int]) -> float:
+    """Return how narrow the shape is where an arc meets others, seen from both sides: the mean, 1 for a cylinder."""
+    shares = {other: border[other] / longest[other] if border[other] else 1.0 for other in meeting}
+    beyond = min((share for other, share in shares.items() if other != arc), default=1.0)
+    return float(np.sqrt(shares[arc] * beyond))
 
 
 def _with_a_body(tree: ArcTree, is_cut: Bools, is_inner: Bools, area: Floats) -> Bools:
