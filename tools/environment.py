@@ -37,8 +37,9 @@ def make_environment(folder: Path, blender: str) -> Path:
     stamp = folder / "eigenparts-environment.txt"
     wanted = _fingerprint(blender)
     if not (stamp.is_file() and stamp.read_text() == wanted and python.exists()):
-        stamp.unlink(missing_ok=True)
+        _refuse_foreign(folder, stamp)
         _create(folder, BLENDERS[blender][0])
+        stamp.write_text("not finished\n")
         _install(python, blender)
         _check_import(python)
         stamp.write_text(wanted)
@@ -60,6 +61,12 @@ def usual_blender() -> str:
 def _fingerprint(blender: str) -> str:
     recipe = blender + "".join(BLENDERS[blender]) + REQUIREMENTS.read_text()
     return f"Blender {blender}, recipe {hashlib.sha256(recipe.encode()).hexdigest()}\n"
+
+
+def _refuse_foreign(folder: Path, stamp: Path) -> None:
+    """Creating clears the folder, so it must be one that was made here."""
+    if folder.exists() and any(folder.iterdir()) and not stamp.is_file():
+        raise SetUpError(f"{folder} is there already and was not made for this; remove it or name another folder.")
 
 
 def _create(folder: Path, version: str) -> None:

@@ -1,6 +1,8 @@
 """What a fresh machine is told."""
 
+import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -50,3 +52,12 @@ def test_a_launcher_without_its_python_is_passed_over(tmp_path, monkeypatch):
     launcher.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
     assert find_python("3.99") is None
+
+
+def test_a_folder_that_is_not_ours_is_not_cleared(tmp_path):
+    (tmp_path / "thesis.txt").write_text("precious")
+    script = Path(__file__).parents[2] / "tools" / "environment.py"
+    made = subprocess.run([sys.executable, script, tmp_path], capture_output=True, text=True)
+    assert made.returncode != 0
+    assert "was not made for this" in made.stdout + made.stderr
+    assert (tmp_path / "thesis.txt").read_text() == "precious"
