@@ -64,7 +64,7 @@ def _fingerprint(blender: str) -> str:
 
 
 def _refuse_foreign(folder: Path, stamp: Path) -> None:
-    """Creating clears the folder, so it must be one that was made here."""
+    """Raise if a folder is not from here: creating the environment would clear it."""
     if folder.exists() and any(folder.iterdir()) and not stamp.is_file():
         raise SetUpError(f"{folder} is there already and was not made for this; remove it or name another folder.")
 
