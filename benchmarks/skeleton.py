@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,13 +78,12 @@ def main() -> int:
     if arguments.sizes:
         sys.stdout.write(_table_of_sizes())
         return 0
-    lines = [
-        "| mesh | vertices | method | joints | leaves | inside | true to found | found to true | limb joints | s |",
-        "|---|---|---|---|---|---|---|---|---|---|",
-    ]
+    head = "| mesh | vertices | method | joints | leaves | inside | true to found | found to true | limb joints | s |"
+    sys.stdout.write(f"{head}\n|{10 * '---|'}\n")
     for subject in (*_examples(), *_from_files(arguments.data)):
-        lines += _rows(subject, arguments.peer)
-    sys.stdout.write("\n".join(lines) + "\n")
+        for row in _rows(subject, arguments.peer):
+            sys.stdout.write(f"{row}\n")
+            sys.stdout.flush()
     return 0
 
 
@@ -134,17 +133,16 @@ def _makehuman(folder: Path) -> Subject:
     return Subject("makehuman", read_mesh(folder / "mh_body_0_rest.obj"), true, limbs)
 
 
-def _rows(subject: Subject, peer: Path | None) -> list[str]:
+def _rows(subject: Subject, peer: Path | None) -> Iterator[str]:
     analysis = analyze(subject.mesh)
     labels = analysis.segment(mode="nested").labels
     start = time.process_time()
     found = skeleton(analysis, labels=labels, n_pieces=2)
     seconds = time.process_time() - start
     n_leaves = len(np.setdiff1d(np.arange(1, len(found.joints)), found.parent))
-    rows = [_row(subject, "Reeb graph, ours", found.joints, n_leaves, seconds)]
-    for method in ("contraction", "wavefront") if peer else ():
-        rows.append(_row_of_peer(subject, peer, method))
-    return rows
+    yield _row(subject, "Reeb graph, ours", found.joints, n_leaves, seconds)
+    for method in ("wavefront", "contraction") if peer else ():
+        yield _row_of_peer(subject, peer, method)
 
 
 def _row_of_peer(subject: Subject, peer: Path, method: str) -> str:
