@@ -60,6 +60,7 @@ _HOME = {
     "relief_of": "segmentation.relief",
     "analyze": "analysis",
     "Analysis": "analysis",
+    "silent": "progress",
     "Matching": "registration.matching",
     "matching_shape": "registration.matching",
     "Divisible": "registration.carried_labels",

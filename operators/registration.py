@@ -143,7 +143,8 @@ def register_subjects(
     for number, (subject, other) in enumerate(zip(targets, others, strict=True)):
         told = _naming(_step(progress, len(targets) + 1 + number, n_steps), subject.name)
         matching = _match(prepared, own.key, other, wish, told)
-        found.append(_register(prepared, other.shape, other.outcome, matching, wish, first_free))
+        carrying = _part(told, 0.7, 1)
+        found.append(_register(prepared, other.shape, other.outcome, matching, wish, first_free, carrying))
         first_free = max(first_free, int(found[-1].labels.parts.id.max()) + 1)
     progress(1.0, "Done")
     return Registration(own.outcome, labels.level, tuple(found))
@@ -155,7 +156,7 @@ def register_analyzed(
     """Return an analyzed mesh divided into the parts of the reference; its own are numbered from ``first_free``."""
     shape = engine.divisible(target, engine.matching_shape(target), outcome.polygon_of_triangle)
     matching = engine.match_divisible(reference, shape, flips=wish.flips, mirrored=wish.mirrored)
-    return _register(reference, shape, outcome, matching, wish, first_free)
+    return _register(reference, shape, outcome, matching, wish, first_free, engine.silent)
 
 
 def _examine(subject: Subject, progress: Progress) -> Examined:
@@ -206,10 +207,9 @@ def _match(
     known = _recent_matchings.get(key)
     if known is None:
         known = engine.match_divisible(
-            reference, target.shape, flips=wish.flips, mirrored=wish.mirrored, progress=_part(progress, 0, 0.9)
+            reference, target.shape, flips=wish.flips, mirrored=wish.mirrored, progress=_part(progress, 0, 0.7)
         )
         _recent_matchings.put(key, known, 1)
-    progress(0.9, "Carrying the parts over")
     return known
 
 
@@ -220,10 +220,11 @@ def _register(
     best: "engine.Matching",
     wish: Wish,
     first_free: int,
+    progress: Progress,
 ) -> Found:
     matchings = (best, *best.alternatives)
     alternative = wish.alternative % len(matchings)
-    labels = engine.label_matched(reference, target, matchings[alternative], first_free)
+    labels = engine.label_matched(reference, target, matchings[alternative], first_free, progress)
     diagrams = engine.match_shape_diagrams(reference.shape.shape, target.shape)
     by_diagrams = np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order))
     matching, n_others = matchings[alternative], len(matchings) - 1

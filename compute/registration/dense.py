@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..mesh import Floats, Ints
+from ..progress import Progress, section, silent
 from .matching import Matching
 from .spectral_shape import SpectralShape, farthest_points
 from .zoomout import nearest_points, sample_functions, with_constant, zoom_out
@@ -12,7 +13,9 @@ DENSE_SIZES = (50, 60, 72, 86, 100)
 DENSE_SAMPLES = 3000
 
 
-def source_points(source: SpectralShape, target: SpectralShape, matching: Matching) -> Ints:
+def source_points(
+    source: SpectralShape, target: SpectralShape, matching: Matching, progress: Progress = silent
+) -> Ints:
     """Return (n,) for each point of the target the point of the source that it corresponds to.
 
     The map keeps to the source's `DENSE_SAMPLES` farthest points, or corresponds by number for shapes of one topology.
@@ -20,11 +23,14 @@ def source_points(source: SpectralShape, target: SpectralShape, matching: Matchi
     if matching.same_topology:
         return np.arange(len(target.positions))
     samples = farthest_points(source.positions, DENSE_SAMPLES)
-    grown = dense_map(source, target, matching, samples)
-    return samples[nearest_points(grown, source.functions[samples], target.functions)]
+    grown = dense_map(source, target, matching, samples, section(progress, 0, 0.7))
+    landing = section(progress, 0.7, 1)
+    return samples[nearest_points(grown, source.functions[samples], target.functions, landing)]
 
 
-def dense_map(source: SpectralShape, target: SpectralShape, matching: Matching, samples: Ints) -> Floats:
+def dense_map(
+    source: SpectralShape, target: SpectralShape, matching: Matching, samples: Ints, progress: Progress = silent
+) -> Floats:
     """Return (k, k) the functional map of a matching, grown to all functions, the constant included.
 
     Parameters
@@ -39,4 +45,4 @@ def dense_map(source: SpectralShape, target: SpectralShape, matching: Matching, 
     target_samples = farthest_points(target.positions, DENSE_SAMPLES)
     here = sample_functions(source.functions[samples], ())
     there = sample_functions(target.functions[target_samples], sizes)
-    return zoom_out(with_constant(matching.map), here, there, sizes)
+    return zoom_out(with_constant(matching.map), here, there, sizes, progress=progress)

@@ -113,9 +113,8 @@ def with_parts(shape: Divisible, labels: Ints, parts: Parts, level: int) -> Refe
 def register_one(reference: Reference, target: Analysis, progress: Progress = silent) -> Registered:
     """Match one shape with the reference and divide it into the same parts."""
     shape = divisible(target, matching_shape(target, section(progress, 0, 0.4)))
-    matching = match_divisible(reference, shape, progress=section(progress, 0.4, 0.9))
-    progress(0.9, "Carrying the parts over")
-    labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest)
+    matching = match_divisible(reference, shape, progress=section(progress, 0.4, 0.8))
+    labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, section(progress, 0.8, 1))
     return Registered(Segmentation(labels.faces, labels.parts, labels.level), matching)
 
 
@@ -134,16 +133,21 @@ def match_divisible(
     )
 
 
-def label_matched(reference: Reference, target: Divisible, matching: Matching, first_free: int) -> FaceLabels:
+def label_matched(
+    reference: Reference, target: Divisible, matching: Matching, first_free: int, progress: Progress = silent
+) -> FaceLabels:
     """Divide a shape into the parts of the reference by a matching that is known.
 
     Parameters
     ----------
     first_free : int
         The least label for parts without a partner on the reference.
+    progress : Progress, optional
+        May raise `Cancelled`.
     """
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
-    landing = source_points(source, target.shape, matching)
+    landing = source_points(source, target.shape, matching, section(progress, 0, 0.8))
+    progress(0.8, "Carrying the parts over")
     cuts, level = partner_cuts(reference.parts, target, landing)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
     same_faces = matching.same_topology and np.array_equal(reference.shape.face, target.face)

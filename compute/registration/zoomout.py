@@ -7,6 +7,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..mesh import Floats, Ints
+from ..progress import Progress, silent
 
 # Sizes of the functional map, the constant included, from hypotheses to a map that can be judged.
 MATCHING_SIZES = (17, 17, 20, 24, 29, 35, 42, 50)
@@ -40,6 +41,7 @@ def zoom_out(
     target: SampledFunctions,
     sizes: Sequence[int],
     signs: Mapping[int, int] | None = None,
+    progress: Progress = silent,
 ) -> Floats:
     """Return a functional map grown to the last of the sizes.
 
@@ -52,13 +54,16 @@ def zoom_out(
         Rising; those below k are passed over. The target has a fit for each.
     signs : mapping of int to +1 or -1, optional
         Signs that some of the source's functions keep all along, by the function from 0, the constant left out.
+    progress : Progress, optional
+        Told before each size; may raise `Cancelled`.
 
     References
     ----------
     .. [1] Melzi et al., "ZoomOut: Spectral Upsampling for Efficient Shape Correspondence", SIGGRAPH Asia 2019.
     """
     grown = start
-    for size in sizes:
+    for number, size in enumerate(sizes):
+        progress(number / len(sizes), "Refining the map")
         if size >= len(start):
             grown = with_signs(_step(grown, source, target, size), signs or {})
     return grown
@@ -69,7 +74,7 @@ def _step(grown: Floats, source: SampledFunctions, target: SampledFunctions, siz
     return target.fits[size] @ matched[:, :size]
 
 
-def nearest_points(functional_map: Floats, source: Floats, target: Floats) -> Ints:
+def nearest_points(functional_map: Floats, source: Floats, target: Floats, progress: Progress = silent) -> Ints:
     """Return for each target point the source point that is nearest after the map of functions.
 
     Parameters
@@ -77,17 +82,20 @@ def nearest_points(functional_map: Floats, source: Floats, target: Floats) -> In
     functional_map : (kt, ks) float64
     source : (n, at least ks) float64
     target : (m, at least kt) float64
+    progress : Progress, optional
+        Told several times a second; may raise `Cancelled`.
     """
     n_target, n_source = functional_map.shape
-    return nearest_rows(target[:, :n_target], source[:, :n_source] @ functional_map.T)
+    return nearest_rows(target[:, :n_target], source[:, :n_source] @ functional_map.T, progress)
 
 
-def nearest_rows(queries: Floats, rows: Floats) -> Ints:
+def nearest_rows(queries: Floats, rows: Floats, progress: Progress = silent) -> Ints:
     """Return for each query the index of the nearest row."""
     half_norms = np.einsum("ij,ij->i", rows, rows) / 2
     transposed = np.ascontiguousarray(rows.T)
     nearest = np.empty(len(queries), dtype=np.int64)
     for start in range(0, len(queries), CHUNK):
+        progress(start / len(queries), "Finding the nearest points")
         block = queries[start : start + CHUNK] @ transposed
         block -= half_norms
         nearest[start : start + CHUNK] = block.argmax(axis=1)
