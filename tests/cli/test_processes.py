@@ -151,7 +151,10 @@ def cluster(tmp_path):
     options = ["--no-dashboard", "--scheduler-file", str(address_file)]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
     scheduler = subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *options], **quiet)
-    workers = [subprocess.Popen([*dask, "worker", *options, "--nthreads", "1", "--no-nanny"], **quiet) for _ in "12"]
+    workers = [
+        subprocess.Popen([*dask, "worker", *options, "--nthreads", "1", "--no-nanny", "--death-timeout", "60"], **quiet)
+        for _ in "12"
+    ]
     yield address_file, workers
     for process in (*workers, scheduler):
         process.terminate()
