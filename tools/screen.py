@@ -18,7 +18,8 @@ class Screen:
     def __init__(self, folder: Path) -> None:
         command = ["Xvfb", "-displayfd", "1", "-screen", "0", SIZE, "-fbdir", str(folder), "+extension", "GLX"]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.name = f":{self._process.stdout.readline().strip()}"
+        with self._process.stdout as told:
+            self.name = f":{told.readline().strip()}"
         self._file = folder / "Xvfb_screen0"
 
     @staticmethod

@@ -38,7 +38,7 @@ def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None
     column = layout.column(align=True)
     column.alert = True
     line = ""
-    for word in bpy.app.translations.pgettext_rpt(sentence).split():
+    for word in bpy.app.translations.pgettext_iface(sentence).split():
         if len(line) + len(word) >= n_letters:
             column.label(text=line, translate=False)
             line = ""
