@@ -63,12 +63,12 @@ def test_a_width_that_is_no_distance_is_refused(width):
         smoothed(mesh, mesh.vertices, width)
 
 
-def test_a_harmonic_fill_of_a_strip_is_linear():
+def test_a_harmonic_fill_of_a_strip_is_nearly_linear():
     strip = rectangle(10, 1, width=10.0)
     x = strip.vertices[:, :1]
     is_known = (x[:, 0] < 0.5) | (x[:, 0] > 9.5)
     filled = harmonic_fill(strip, np.where(is_known[:, None], x, -5.0), is_known)
-    np.testing.assert_allclose(filled, x, atol=0.2)
+    np.testing.assert_allclose(filled, x, atol=0.3)
     np.testing.assert_array_equal(filled[is_known], x[is_known])
 
 

@@ -16,7 +16,7 @@ from compute.registration.transfer import (
     transfer_displacements,
 )
 from tests.compute.registration.shapes import lumpy_ball, moved, shuffled
-from tests.shapes import icosphere, joined
+from tests.shapes import icosphere, joined, tetrahedron
 
 
 def quick(mesh):
@@ -123,7 +123,7 @@ def test_loose_parts_follow_what_is_next_to_them_without_confidence(ball):
 
 
 def test_a_matching_of_other_shapes_is_refused(ball, finer):
-    tiny = quick(icosphere(0))
+    tiny = quick(tetrahedron())
     with pytest.raises(RegistrationError, match="other shapes"):
         correspond(ball, tiny, matching=match(ball, finer))
 
