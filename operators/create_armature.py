@@ -19,7 +19,7 @@ STEEP = 0.9
 UP, FRONT = (0.0, 0.0, 1.0), (0.0, -1.0, 0.0)
 
 ALREADY_BOUND = "The object has an armature already; remove its Armature modifier first."
-NOT_BOUND = "Blender's automatic weights found no solution for this mesh; use the weights from the parts."
+NOT_BOUND = "Blender found no automatic weights for this mesh; undo, and take the weights from the parts."
 
 
 class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.Operator):
@@ -50,6 +50,8 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
             bind(obj, armature, names, laid.weights)
         elif self.weights == "AUTOMATIC":
             bind_automatically(context, obj, armature)
+            if not _is_bound(obj, names):
+                self.report({"WARNING"}, NOT_BOUND)
         self.report({"INFO"}, f"{len(names)} bones in {armature.name}.")
 
 
@@ -93,8 +95,11 @@ def bind_automatically(context: bpy.types.Context, obj: bpy.types.Object, armatu
     chosen = {"object": armature, "active_object": armature, "selected_editable_objects": [obj, armature]}
     with context.temp_override(**chosen, selected_objects=[obj, armature]):
         bpy.ops.object.parent_set(type="ARMATURE_AUTO", keep_transform=True)
-    if not any(vertex.groups for vertex in obj.data.vertices):
-        raise Refusal(NOT_BOUND)
+
+
+def _is_bound(obj: bpy.types.Object, names: list[str]) -> bool:
+    own = {group.index for group in obj.vertex_groups if group.name in names}
+    return any(element.group in own for vertex in obj.data.vertices for element in vertex.groups)
 
 
 def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: Laid, names: list[str]) -> None:

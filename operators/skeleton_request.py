@@ -11,11 +11,12 @@ import numpy as np
 from . import engine, exchange, part_sides, part_table, state
 from .analysis_request import AnalysisRequest
 from .analyze import Ticket, find_mesh
+from .refusals import Refusal
 from .results import PART
 from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Laid:
     """A skeleton with all that its bones are called after.
 
@@ -94,12 +95,20 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, laid: Laid) -> set[str]:
         mesh = find_mesh(ticket)
-        obj = next(obj for obj in context.view_layer.objects if obj.data == mesh)
+        obj = _object_of(context, mesh)
         part_sides.remember(mesh, laid.pairing)
         self.build(context, obj, laid)
         for warning in laid.skeleton.warnings:
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
+
+
+def _object_of(context: bpy.types.Context, mesh: bpy.types.Mesh) -> bpy.types.Object:
+    """Return an object with the mesh, the active one if it still is that."""
+    users = [obj for obj in context.view_layer.objects if obj.data == mesh]
+    if not users:
+        raise Refusal("The object was deleted while its mesh was analyzed.")
+    return context.object if context.object in users else users[0]
 
 
 def lay_bones(

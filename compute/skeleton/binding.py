@@ -79,11 +79,11 @@ def _system(mesh: TriangleMesh, conductivity: Floats) -> tuple[csc_array, Floats
 
 def _few(weights: Floats) -> Floats:
     """Return the largest weights of each row only, as shares of their sum."""
-    weights = np.where(weights < LEAST_WEIGHT, 0.0, weights)
     if weights.shape[1] > MOST_BONES:
-        least = np.partition(weights, -MOST_BONES, axis=1)[:, -MOST_BONES]
-        # Among equals at the edge all stay out but for ties of a fifth, which are rare and harmless.
-        weights = np.where(weights < least[:, None], 0.0, weights)
+        dropped = np.argpartition(weights, -MOST_BONES, axis=1)[:, :-MOST_BONES]
+        weights = weights.copy()
+        np.put_along_axis(weights, dropped, 0.0, axis=1)
+    weights = np.where(weights < LEAST_WEIGHT, 0.0, weights)
     return weights / weights.sum(axis=1, keepdims=True)
 
 

@@ -1,6 +1,7 @@
 """Which bone each vertex belongs to: by its level set on limbs, by the nearest bone in the body."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..analysis import Analysis
 from ..mesh import Floats, Ints
@@ -60,8 +61,6 @@ def _spread(owner: Ints, analysis: Analysis) -> Ints:
     missing = np.flatnonzero(owner < 0)
     if not len(missing):
         return owner
-    from scipy.spatial import cKDTree
-
     known = np.flatnonzero(owner >= 0)
     vertices = analysis.mesh.vertices
     owner[missing] = owner[known[cKDTree(vertices[known]).query(vertices[missing])[1]]]
