@@ -94,8 +94,8 @@ def _add(window: Window, character: Character) -> None:
     vertices, faces = character.vertices.round(6).tolist(), character.quads.tolist()
     window.run(
         f"mesh = bpy.data.meshes.new('body')\nmesh.from_pydata({vertices}, [], {faces})\n"
-        "body = bpy.data.objects.new('body', mesh)\n"
         "for other in list(bpy.data.objects): bpy.data.objects.remove(other)\n"
+        "body = bpy.data.objects.new('body', mesh)\n"
         "bpy.context.scene.collection.objects.link(body)\n"
         "bpy.context.view_layer.objects.active = body\n"
         "with over_view(): bpy.ops.view3d.view_axis(type='FRONT'); bpy.ops.view3d.view_all()"
