@@ -308,7 +308,8 @@ def _assembled(
     pairs = np.array(loops, dtype=np.int64).reshape(-1, 2)
     is_tip = _is_leaf(tree)
     is_tip[pairs[:, 0]] = False
-    places[~is_tip] = interior.pulled_inside(places[~is_tip], radii[~is_tip])
+    strays = np.flatnonzero(~is_tip | ~interior.holds(places))
+    places[strays] = interior.pulled_inside(places[strays], radii[strays])
     bones = bones_of_vertices(analysis, slices, bone_of_slice, places, tree, parts)
     return Skeleton(places, tree, parts, radii, pairs, bones, _warnings(analysis, len(pairs)))
 
