@@ -158,3 +158,29 @@ def test_bones_of_registered_characters_are_called_alike(body, human):
         bpy.ops.eigenparts.create_armature(order="1")
         names.append({bone.name.split("_")[0] for bone in bpy.context.object.data.bones if "root" not in bone.name})
     assert names[0] == names[1]
+
+
+def test_the_armature_is_one_step_of_undo(body):
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.ed.undo_push(message="analyzed")
+        bpy.ops.eigenparts.create_armature(order="1")
+        bpy.ops.ed.undo_push(message="bound")
+        bpy.ops.ed.undo()
+    obj = bpy.data.objects["human"]
+    assert len(bpy.data.armatures) == 0
+    assert len(obj.vertex_groups) == len(obj.modifiers) == 0
+    assert obj.parent is None
+
+
+def test_loose_parts_are_told_and_follow_what_is_near(human):
+    ball = icosphere(1)
+    vertices = np.concatenate([human.vertices, 0.02 * ball.vertices + [0, -0.3, 1.6]])
+    faces = [*human.quads.tolist(), *(ball.triangles + len(human.vertices)).tolist()]
+    obj = add_object(vertices, faces, "human")
+    bpy.ops.eigenparts.analyze(order="1")
+    bpy.ops.eigenparts.create_armature(order="1")
+    head = max(bpy.context.object.data.bones, key=lambda bone: bone.tail_local.z).name
+    for vertex in list(obj.data.vertices)[len(human.vertices) :]:
+        heaviest = max(vertex.groups, key=lambda element: element.weight)
+        assert obj.vertex_groups[heaviest.group].name == head
