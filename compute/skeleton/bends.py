@@ -78,7 +78,7 @@ def joints_along(curve: Curve, fixed: Ints, n_pieces: int = 1) -> Ints:
 
 def _averaged(values: Floats, rounds: int) -> Floats:
     """Return values (P, n, d) with the ripples of single slices taken out along n; the ends stay."""
-    for _ in range(rounds):
+    for _ in range(rounds if values.shape[1] > 2 else 0):
         inner = (values[:, :-2] + 2 * values[:, 1:-1] + values[:, 2:]) / 4
         values = np.concatenate([values[:, :1], inner, values[:, -1:]], axis=1)
     return values

@@ -20,10 +20,13 @@ from .ownership import bones_of_vertices
 from .slices import Slices, slice_arcs, triangle_centres
 
 ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level."
+NO_LIMBS = "The parts of this level are too short for bones; choose another level."
 # How far a tip reaches from the last slice towards the extremum, as long as it stays inside.
 REACHES = (0.85, 0.7, 0.5, 0.3)
 # A middle line that never gets as far out as this fraction of its limb ends in a cavity.
 CAVITY = 0.82
+# Bones shorter than this fraction of the skeleton are none.
+SHORTEST_BONE = 2e-3
 # The hub in the middle of a shape that has only two ends: no node of the graph.
 MIDDLE = -1
 
@@ -156,6 +159,8 @@ def _plan(
 ) -> _Plan:
     tips = _tips(analysis, graph, slices)
     chains, hubs = _with_middle(chains_between(graph, slices, tips), tips, slices, centres)
+    if not chains:
+        raise LevelError(NO_LIMBS)
     root = _root(chains, hubs, slices)
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
@@ -217,6 +222,8 @@ def _tips(analysis: Analysis, graph: ReebGraph, slices: Slices) -> set[int]:
     tips: dict[int, int] = {}
     for leaf in ranked:
         of_arc = slices.of_arc(arc_of[leaf])
+        if not len(of_arc):
+            continue
         part = int(slices.part[of_arc[-1] if is_upper[leaf] else of_arc[0]])
         tips.setdefault(part, leaf)
     return set(tips.values())
@@ -228,10 +235,13 @@ def _with_middle(chains: list[Chain], tips: set[int], slices: Slices, centres: F
     if not hubs:
         (chain,) = chains
         length = np.cumsum(slices.length[chain.slices])
-        half = int(np.clip(np.searchsorted(length, length[-1] / 2), 1, len(length) - 1))
+        half = min(int(np.searchsorted(length, length[-1] / 2)), len(length) - 1)
         middle = chain.slices[half]
         hubs = [Hub(frozenset([MIDDLE]), centres[:, middle], float(slices.radius[middle]))]
-        chains = [Chain(MIDDLE, chain.start, chain.slices[:half][::-1]), Chain(MIDDLE, chain.end, chain.slices[half:])]
+        chains = [
+            Chain(MIDDLE, chain.start, chain.slices[: half + 1][::-1]),
+            Chain(MIDDLE, chain.end, chain.slices[half:]),
+        ]
     return [_outward(chain, tips) for chain in chains if not _is_inside(chain, hubs)], hubs
 
 
@@ -310,8 +320,25 @@ def _assembled(
     is_tip[pairs[:, 0]] = False
     strays = np.flatnonzero(~is_tip | ~interior.holds(places))
     places[strays] = interior.pulled_inside(places[strays], radii[strays])
+    kept, stands_for = _real_joints(places, tree)
+    places, tree, parts, radii = places[kept], stands_for[tree[kept]], parts[kept], radii[kept]
+    tree[0], pairs = -1, stands_for[pairs]
+    bone_of_slice = np.where(bone_of_slice < 0, -1, stands_for[bone_of_slice])
+    bone_of_slice[bone_of_slice == 0] = -1
     bones = bones_of_vertices(analysis, slices, bone_of_slice, places, tree, parts)
     return Skeleton(places, tree, parts, radii, pairs, bones, _warnings(analysis, len(pairs)))
+
+
+def _real_joints(places: Floats, parent: Ints) -> tuple[Ints, Ints]:
+    """Return the joints with a bone of some length, and for each joint the place of the one that stands for it."""
+    least = SHORTEST_BONE * np.ptp(places, axis=0).max()
+    stands_for = np.arange(len(parent))
+    for joint in range(1, len(parent)):
+        before = stands_for[parent[joint]]
+        if np.linalg.norm(places[joint] - places[before]) < least:
+            stands_for[joint] = before
+    kept, number = np.unique(stands_for, return_inverse=True)
+    return kept, number.reshape(-1)
 
 
 def _is_leaf(parent: Ints) -> Bools:

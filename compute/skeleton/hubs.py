@@ -67,6 +67,7 @@ def _hub_at(nodes: frozenset[int], chains: list[Chain], slices: Slices, centres:
     """Return a hub in the middle of the level sets that lead away from some nodes, wide ones counting more."""
     # Chains between the nodes lie askew; a ring at a single node has two ends there.
     leaving = [chain for chain in chains if chain.start == chain.end or not {chain.start, chain.end} <= nodes]
+    leaving = leaving if any(nodes & {chain.start, chain.end} for chain in leaving) else chains
     starts = [chain.slices[0] for chain in leaving if chain.start in nodes]
     ends: Ints = np.array(starts + [chain.slices[-1] for chain in leaving if chain.end in nodes], dtype=np.int64)
     girth = slices.girth[ends]

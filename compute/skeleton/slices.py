@@ -106,7 +106,8 @@ def _equal_areas(arc: Ints, n_arcs: int, height: Floats, area: Floats) -> tuple[
     n_slices = np.clip(count // LEAST_TRIANGLES, 1, MOST_SLICES)
     arc, total = arc[order], np.bincount(arc, area, n_arcs)
     below = np.cumsum(area[order]) - area[order]
-    share = (below - below[np.cumsum(count) - count][arc]) / np.maximum(total[arc], np.finfo(float).tiny)
+    start = np.append(below, 0.0)[np.cumsum(count) - count]
+    share = (below - start[arc]) / np.maximum(total[arc], np.finfo(float).tiny)
     place = np.clip((share * n_slices[arc]).astype(np.int64), 0, n_slices[arc] - 1)
     # A single large triangle can reach over several slices: those behind it are left out.
     keys, first, slice_in_order = np.unique(arc * MOST_SLICES + place, return_index=True, return_inverse=True)

@@ -158,3 +158,13 @@ def test_a_level_with_one_part_has_no_bones(human_analysis):
 def test_a_pose_of_another_mesh_is_refused(human_analysis):
     with pytest.raises(MeshError, match="Pose 1"):
         skeleton(human_analysis, poses=[np.zeros((4, 3))])
+
+
+@pytest.mark.parametrize("level", [1, 2, -1])
+def test_coarse_shapes_have_sound_bones_at_every_level(level):
+    shape = star(4, n_subdivisions=2)
+    analysis = analyze(shape)
+    found = skeleton(analysis, level=level % analysis.hierarchy.n_levels, n_pieces=2)
+    assert np.isfinite(found.joints).all()
+    assert lengths(found).min() > 0
+    assert found.bone_of_vertex.min() >= 1
