@@ -3,11 +3,16 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from .errors import MeshError
 from .mesh import Bools, Ints, TriangleMesh
 from .shells import bridge_shells
+
+# Edges shorter than this are collapsed; in units of the root of the mean area of a triangle.
+SHORTEST_EDGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +47,9 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
     """Return one component of a mesh in a state that can be analyzed.
 
     Doubled vertices are welded where the mesh is open, so that seams and triangle soups hold together while closed
-    shells that merely touch stay apart. Triangles that lose a corner by it and repeated triangles are left out.
-    Zero-area triangles with three different corners stay: taking them out would tear the surface.
+    shells that merely touch stay apart; the ends of edges without length are welded everywhere. Triangles that lose a corner by it
+    and repeated triangles are left out. Zero-area triangles between three places stay: taking them out would tear the
+    surface.
 
     Parameters
     ----------
@@ -107,7 +113,7 @@ class _Welded:
 
 
 def _weld(mesh: TriangleMesh) -> _Welded:
-    vertex_of_input = _weld_open_doubles(mesh)
+    vertex_of_input = _contract_short_edges(mesh, _weld_open_doubles(mesh))
     corners = vertex_of_input[mesh.triangles]
     twin = _first_twin(corners, len(mesh.vertices))
     kept = np.flatnonzero(twin == np.arange(len(twin)))
@@ -144,6 +150,19 @@ def _weld_open_doubles(mesh: TriangleMesh) -> Ints:
         _, first, place = np.unique(mesh.vertices[on_boundary] + 0.0, axis=0, return_index=True, return_inverse=True)
         vertex[on_boundary] = on_boundary[first[place.reshape(-1)]]
     return vertex
+
+
+def _contract_short_edges(mesh: TriangleMesh, vertex_of_input: Ints) -> Ints:
+    """Weld the ends of edges without length: what hangs on collapsed faces alone would not hang together."""
+    corners = vertex_of_input[mesh.triangles]
+    sides = np.stack([corners.ravel(), np.roll(corners, -1, axis=1).ravel()])
+    tails, heads = mesh.vertices[sides]
+    shortest = SHORTEST_EDGE * np.sqrt(mesh.areas.mean())
+    tails, heads = sides[:, np.abs(heads - tails).max(axis=1) <= shortest]
+    n_vertices = len(vertex_of_input)
+    graph = coo_array((np.ones(len(tails), dtype=bool), (tails, heads)), shape=(n_vertices, n_vertices))
+    _, first, piece = np.unique(connected_components(graph, directed=False)[1], return_index=True, return_inverse=True)
+    return first[piece.reshape(-1)][vertex_of_input]
 
 
 def _first_twin(corners: Ints, n_vertices: int) -> Ints:

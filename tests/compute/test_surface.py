@@ -53,6 +53,19 @@ def test_a_flat_triangle_with_three_corners_stays_so_that_the_surface_does_not_t
     assert surface.n_components == 1
 
 
+def test_edges_without_length_are_welded():
+    """A tip of three vertices in one place, which collapsed faces join."""
+    cone = icosphere(1)
+    tip = cone.triangles[0]
+    vertices = cone.vertices.copy()
+    vertices[tip] = vertices[tip].mean(axis=0)
+    surface = clean_surface(TriangleMesh(vertices, cone.triangles))
+    assert len(set(surface.vertex_of_input[tip])) == 1
+    # The face itself and the three beside it are gone.
+    assert len(surface.mesh.triangles) == 80 - 4
+    assert (surface.mesh.edges.n_triangles == 2).all()
+
+
 def test_a_component_can_be_chosen():
     small = TriangleMesh(tetrahedron().vertices + 9, tetrahedron().triangles)
     assert len(clean_surface(joined(icosphere(1), small), component=1).mesh.triangles) == 4
