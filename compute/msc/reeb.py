@@ -75,8 +75,9 @@ def build_reeb_graph(values: Floats, rank: Ints, links: Links, critical: Ints) -
     """
     nodes = critical[np.argsort(rank[critical])]
     slices = _Slices.of(rank, links, rank[nodes])
-    contacts, passing = _level_sets(rank, links, slices)
-    left, right = _touching_slices(rank, links, slices)
+    inside = _levels_along_edges(rank, links, slices)
+    contacts, passing = _level_sets(rank, links, slices, inside)
+    left, right = _touching_slices(rank, links, slices, inside)
     _, piece = _components(slices.count, np.concatenate([left, passing[0]]), np.concatenate([right, passing[1]]))
     arcs = _Chains.of(contacts[0], piece[contacts[1]], len(nodes))
     middle = np.searchsorted(values[nodes], values[links.triangles].mean(axis=1), side="right") - 1
@@ -126,8 +127,17 @@ class _Chains:
         """Return the arc of slices, given by their pieces and the levels they lie above."""
         piece = self.instead[piece]
         row = self.keys.searchsorted(piece * self.n_nodes + level, side="right") - 1
-        first, last = (self.keys.searchsorted((piece + after) * self.n_nodes) for after in (0, 1))
-        return (np.cumsum(self._is_arc) - 1)[np.clip(row, first, last - 2)]
+        lowest, highest = self._first_key[piece], self._first_key[piece + 1] - 2
+        return self._arc_of_key[np.clip(row, lowest, highest)]
+
+    @cached_property
+    def _first_key(self) -> Ints:
+        """(P + 1,) where the keys of each piece begin."""
+        return self.keys.searchsorted(np.arange(len(self.instead) + 1) * self.n_nodes)
+
+    @cached_property
+    def _arc_of_key(self) -> Ints:
+        return np.cumsum(self._is_arc) - 1
 
     @cached_property
     def _is_arc(self) -> Bools:
@@ -172,13 +182,14 @@ def _runs(start: Ints, stop: Ints) -> tuple[Ints, Ints]:
     return row, np.arange(len(row)) - np.repeat(np.cumsum(length) - length, length) + start[row]
 
 
-def _touching_slices(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, Ints]:
+def _touching_slices(rank: Ints, links: Links, slices: _Slices, inside: tuple[Ints, Ints]) -> tuple[Ints, Ints]:
     """Return pairs of slices between the same levels that share a stretch of an edge, or a pinched vertex."""
-    first, last = _levels_along_edges(rank, links, slices)
+    first, last = inside
     row, place = _runs(first - 1, last)
     left, right = links.edges.neighbours[row].T
-    pinched = ~links.is_plain[links.triangles] & ~np.isin(rank[links.triangles], slices.levels)
-    triangle, corner = np.nonzero(pinched)
+    pinched = ~links.is_plain
+    pinched[_node_at_rank(links, slices)[rank] >= 0] = False
+    triangle, corner = np.nonzero(pinched[links.triangles])
     vertex = links.triangles[triangle, corner]
     order = np.argsort(vertex, kind="stable")
     triangle, vertex = triangle[order], vertex[order]
@@ -192,13 +203,13 @@ def _touching_slices(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, I
 
 def _levels_along_edges(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, Ints]:
     """Return the first and last level strictly inside each shared edge, one row for each pair of neighbours."""
-    ends = np.sort(rank[links.edges.vertices], axis=1)
-    first = np.searchsorted(slices.levels, ends[:, 0], side="right")
-    last = np.searchsorted(slices.levels, ends[:, 1], side="left") - 1
+    left, right = rank[links.edges.vertices.T]
+    first = np.searchsorted(slices.levels, np.minimum(left, right), side="right")
+    last = np.searchsorted(slices.levels, np.maximum(left, right), side="left") - 1
     return first[links.edges.shared], last[links.edges.shared]
 
 
-def _level_sets(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, tuple[Ints, Ints]]:
+def _level_sets(rank: Ints, links: Links, slices: _Slices, inside: tuple[Ints, Ints]) -> tuple[Ints, tuple[Ints, Ints]]:
     """Follow the level sets of the critical points.
 
     Returns the rows (node, slice) of what touches the level set component of a node, and the pairs of slices below and
@@ -211,7 +222,7 @@ def _level_sets(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, tuple[
     def cut(of_triangle: Ints, of_level: Ints) -> Ints:
         return n_nodes + n_before[of_triangle] + of_level - slices.first[of_triangle] - 1
 
-    row, level_of_row = _runs(*_levels_along_edges(rank, links, slices))
+    row, level_of_row = _runs(*inside)
     left, right = links.edges.neighbours[row].T
     touching, node, is_low, is_high = _triangles_of_nodes(rank, links, slices)
     through = ~is_low & ~is_high
@@ -233,9 +244,7 @@ def _level_sets(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, tuple[
 
 def _triangles_of_nodes(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, Ints, Bools, Bools]:
     """Return the triangles at each node, and whether the node is their lowest or highest corner."""
-    node_at_rank = np.full(links.n_vertices, -1)
-    node_at_rank[slices.levels] = np.arange(len(slices.levels))
-    node = node_at_rank[rank[links.triangles]]
+    node = _node_at_rank(links, slices)[rank][links.triangles]
     triangle, corner = np.nonzero(node >= 0)
     low, _, high = ranked_corners(rank, links)
     node = node[triangle, corner]
@@ -243,14 +252,21 @@ def _triangles_of_nodes(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints
     return triangle, node, height == low[triangle], height == high[triangle]
 
 
+def _node_at_rank(links: Links, slices: _Slices) -> Ints:
+    """Return (n,) the node of each rank, -1 for ranks of other vertices."""
+    node = np.full(links.n_vertices, -1)
+    node[slices.levels] = np.arange(len(slices.levels))
+    return node
+
+
 def _arc_of_vertex(rank: Ints, links: Links, slices: _Slices, piece: Ints, arcs: _Chains) -> Ints:
-    found = np.full(links.n_vertices, -1)
-    triangle, corner = np.divmod(np.arange(links.triangles.size), 3)
-    vertex = links.triangles[triangle, corner]
-    inner = ~np.isin(rank[vertex], slices.levels)
-    triangle, vertex = triangle[inner], vertex[inner]
+    # Any triangle at a vertex will do: around it, slices between the same levels are joined.
+    triangle = np.full(links.n_vertices, -1)
+    triangle[links.triangles.ravel()] = np.repeat(np.arange(len(links.triangles)), 3)
+    vertex = np.flatnonzero((triangle >= 0) & (_node_at_rank(links, slices)[rank] < 0))
     level = np.searchsorted(slices.levels, rank[vertex]) - 1
-    found[vertex] = arcs.at(piece[slices.at(triangle, level)], level)
+    found = np.full(links.n_vertices, -1)
+    found[vertex] = arcs.at(piece[slices.at(triangle[vertex], level)], level)
     return found
 
 
