@@ -3,6 +3,8 @@
 import pickle
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache as cache_result
+from hashlib import blake2b
 from pathlib import Path
 
 import numpy as np
@@ -36,13 +38,20 @@ class Copy:
 
 def make_copy(pose: Pose, kind: str, cache: Path) -> Copy:
     """Return a copy of a pose, from the cache if it was made before."""
-    path = cache / f"{pose.family}-{pose.name}-{kind}.pickle"
+    path = cache / f"{pose.family}-{pose.name}-{kind}-{engine_digest()}.pickle"
     if not path.exists():
         analysis = analyze(COPIES[kind](pose.mesh))
         shape = spectral_shape(analysis.matching_basis)
         truth = closest_points(analysis.matching_basis.nodes[shape.node], pose.mesh)
         path.write_bytes(pickle.dumps(Copy(pose, analysis, shape, truth)))
     return pickle.loads(path.read_bytes())
+
+
+@cache_result
+def engine_digest() -> str:
+    """Return a text that changes with the engine, whose results are not mixed with those of another one."""
+    files = sorted((Path(__file__).parents[1] / "compute").rglob("*.py"))
+    return blake2b(b"".join(file.read_bytes() for file in files), digest_size=6).hexdigest()
 
 
 def map_error(functional_map: Floats, source: Copy, target: Copy) -> float:
