@@ -80,7 +80,7 @@ def build_reeb_graph(values: Floats, rank: Ints, links: Links, critical: Ints) -
     left, right = _touching_slices(rank, links, slices, inside)
     _, piece = _components(slices.count, np.concatenate([left, passing[0]]), np.concatenate([right, passing[1]]))
     arcs = _Chains.of(contacts[0], piece[contacts[1]], len(nodes))
-    middle = np.searchsorted(values[nodes], values[links.triangles].mean(axis=1), side="right") - 1
+    middle = np.searchsorted(values[nodes], values[links.triangles.T].mean(axis=0), side="right") - 1
     middle = np.clip(middle, slices.first, slices.last)
     rows = slices.at(np.arange(len(links.triangles)), middle)
     return ReebGraph(nodes, arcs.ends, arcs.at(piece[rows], middle), _arc_of_vertex(rank, links, slices, piece, arcs))

@@ -17,7 +17,7 @@ from .hubs import Hub, gathered_hubs, hub_number
 from .interior import Interior
 from .limbs import Ends, Limb, lay_limb, trace_limb, with_equal_joints
 from .ownership import bones_of_vertices
-from .slices import Slices, slice_arcs, triangle_centres
+from .slices import Slices, centres_at_rest, centres_in_pose, slice_arcs
 
 ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level."
 NO_LIMBS = "The parts of this level are too short for bones; choose another level."
@@ -110,9 +110,10 @@ def skeleton(
     slices = slice_arcs(analysis, graph, labels)
     interior = Interior.of(analysis.surface)
     others = _checked_poses(analysis, poses)
-    at_rest = interior.centred(slices.means(analysis.net.positions[analysis.net.triangles].mean(axis=1)), slices.radius)
-    centres = np.stack([at_rest, *(slices.means(triangle_centres(analysis, vertices)) for vertices in others)])
-    plan = _plan(analysis, graph, slices, centres, np.stack([analysis.mesh.vertices, *others]), interior)
+    at_rest = centres_at_rest(analysis)
+    middles = [interior.centred(slices.means(at_rest), slices.radius)]
+    centres = np.stack([*middles, *(slices.means(centres_in_pose(analysis, vertices)) for vertices in others)])
+    plan = _plan(analysis, graph, slices, centres, np.stack([analysis.mesh.vertices, *others]), at_rest, interior)
     traces = [
         trace_limb(chain, ends, slices, plan.centres, n_pieces)
         for chain, ends in zip(plan.chains, plan.ends, strict=True)
@@ -155,7 +156,13 @@ class _Plan:
 
 
 def _plan(
-    analysis: Analysis, graph: ReebGraph, slices: Slices, centres: Floats, poses: Floats, interior: Interior
+    analysis: Analysis,
+    graph: ReebGraph,
+    slices: Slices,
+    centres: Floats,
+    poses: Floats,
+    at_rest: Floats,
+    interior: Interior,
 ) -> _Plan:
     tips = _tips(analysis, graph, slices)
     chains, hubs = _with_middle(chains_between(graph, slices, tips), tips, slices, centres)
@@ -165,7 +172,6 @@ def _plan(
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
     nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
-    at_rest = analysis.net.positions[analysis.net.triangles].mean(axis=1)
     ends, centres = [], centres.copy()
     for chain in order:
         start, end = hub_number(hubs, chain.start), hub_number(hubs, chain.end)

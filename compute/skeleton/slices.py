@@ -79,7 +79,7 @@ def slice_arcs(analysis: Analysis, graph: ReebGraph, labels: NDArray[np.int32]) 
         Part of each triangle of the input.
     """
     net, values = analysis.net, analysis.field.values
-    height = values[net.triangles].mean(axis=1)
+    height = _means_of_corners(values[net.triangles.T])
     offset, of_triangle, lowest = _equal_areas(graph.arc_of_triangle, len(graph.arcs), height, net.areas)
     weight = _level_lengths(net.positions[net.triangles], values[net.triangles])
     n_slices = int(offset[-1])
@@ -90,13 +90,23 @@ def slice_arcs(analysis: Analysis, graph: ReebGraph, labels: NDArray[np.int32]) 
     return Slices(offset, of_triangle, weight, girth, area / girth, _main_labels(of_triangle, label, net.areas))
 
 
-def triangle_centres(analysis: Analysis, vertices: Floats) -> Floats:
+def centres_at_rest(analysis: Analysis) -> Floats:
+    """Return (m, 3) the centres of the net's triangles."""
+    return _means_of_corners(analysis.net.positions[analysis.net.triangles.T])
+
+
+def centres_in_pose(analysis: Analysis, vertices: Floats) -> Floats:
     """Return (m, 3) the centres of the net's triangles when the (V, 3) vertices of the input lie elsewhere."""
-    net, surface = analysis.net, analysis.surface.mesh
-    corners = surface.triangles[net.triangle_of_surface]
-    centre = net.positions[net.triangles].mean(axis=1)
-    weights = _barycentric(surface.vertices[corners], centre)
+    surface = analysis.surface.mesh
+    corners = surface.triangles[analysis.net.triangle_of_surface]
+    weights = _barycentric(surface.vertices[corners], centres_at_rest(analysis))
     return np.einsum("mk,mkj->mj", weights, vertices[corners])
+
+
+def _means_of_corners(values: Floats) -> Floats:
+    """Return the means over the first of three rows; adding them is faster than ``mean``."""
+    first, second, third = values
+    return (first + second + third) / 3
 
 
 def _equal_areas(arc: Ints, n_arcs: int, height: Floats, area: Floats) -> tuple[Ints, Ints, Floats]:
