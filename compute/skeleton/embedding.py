@@ -1,7 +1,7 @@
 """The skeleton: the Reeb graph of the field, cleared of what is no limb and laid into the mesh."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,9 @@ from ..mesh import Bools, Floats, Ints
 from ..msc.reeb import ReebGraph
 from ..segmentation.parts import BODY
 from .branching import Chain, chains_between
-from .hubs import Hub, gathered_hubs, hub_number
+from .hubs import Hub, gathered_hubs, hub_number, joined_hubs
 from .interior import Interior
+from .layout import BoneLayout, Tips, layout_of, level_with_tips, root_of_layout, tips_on_sides, with_layout
 from .limbs import Ends, Limb, lay_limb, trace_limb, with_equal_joints
 from .ownership import bones_of_vertices
 from .slices import Slices, centres_at_rest, centres_in_pose, slice_arcs
@@ -50,6 +51,8 @@ class Skeleton:
         The bone, by the joint it ends in, that each vertex of the input belongs to.
     warnings : tuple of str
         Sentences for the user.
+    layout : BoneLayout or None
+        Which bones these are, to lay the same into a registered shape; None where there are loops.
     """
 
     joints: Floats
@@ -59,6 +62,7 @@ class Skeleton:
     loops: Ints
     bone_of_vertex: Ints
     warnings: tuple[str, ...] = ()
+    layout: BoneLayout | None = None
 
 
 def skeleton(
@@ -70,6 +74,7 @@ def skeleton(
     poses: Sequence[ArrayLike] = (),
     n_pieces: int = 1,
     partner: Ints | None = None,
+    layout: BoneLayout | None = None,
 ) -> Skeleton:
     """Return joints and bones of a shape from the Reeb graph of its field.
 
@@ -90,6 +95,9 @@ def skeleton(
         Bones that a long straight limb is divided into, so that it can be bent.
     partner : (P,) int64, optional
         For each label the part that is its mirror image, as of `mirror_parts`: both get joints at the same places.
+    layout : BoneLayout, optional
+        Of the skeleton of another shape with the same parts: equal parts get the same bones here, whatever the level,
+        and each joint lies at the same share of the way along its limb.
 
     Raises
     ------
@@ -104,6 +112,9 @@ def skeleton(
     """
     if labels is None:
         labels = _labels_of_level(analysis, level, mode)
+    if layout is not None:
+        level = analysis.hierarchy.default_level if level is None else level
+        level = level_with_tips(analysis, labels, layout.tips, level)
     graph = reeb_graph(analysis, level=level)
     if labels.min() == labels.max():
         raise LevelError(ONE_PART)
@@ -113,15 +124,21 @@ def skeleton(
     at_rest = centres_at_rest(analysis)
     middles = [interior.centred(slices.means(at_rest), slices.radius)]
     centres = np.stack([*middles, *(slices.means(centres_in_pose(analysis, vertices)) for vertices in others)])
-    plan = _plan(analysis, graph, slices, centres, np.stack([analysis.mesh.vertices, *others]), at_rest, interior)
+    poses_of_mesh = np.stack([analysis.mesh.vertices, *others])
+    plan = _plan(analysis, graph, slices, centres, poses_of_mesh, at_rest, interior, layout)
     traces = [
         trace_limb(chain, ends, slices, plan.centres, n_pieces)
         for chain, ends in zip(plan.chains, plan.ends, strict=True)
     ]
     if partner is not None:
         traces = with_equal_joints(traces, slices, partner)
+    if layout is not None:
+        traces = with_layout(traces, plan.sides, layout)
     limbs = [lay_limb(trace, slices) for trace in traces]
-    return _assembled(analysis, plan, limbs, slices, interior, labels)
+    found = _assembled(analysis, plan, limbs, slices, interior)
+    if any(plan.closes_loop):
+        return found
+    return replace(found, layout=layout_of(traces, plan.sides, plan.root, labels, slices))
 
 
 def _labels_of_level(analysis: Analysis, level: int | None, mode: str) -> NDArray[np.int32]:
@@ -144,13 +161,14 @@ def _checked_poses(analysis: Analysis, poses: Sequence[ArrayLike]) -> list[Float
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """Chains with their ends, from the root outward, whether each closes a loop, and the middles of the slices."""
+    """Chains with their ends and the tips on both sides, from the root outward, and the middles of the slices."""
 
     hubs: list[Hub]
     root: int
     root_part: int
     chains: list[Chain]
     ends: list[Ends]
+    sides: list[tuple[Tips, Tips]]
     closes_loop: list[bool]
     centres: Floats
 
@@ -163,12 +181,18 @@ def _plan(
     poses: Floats,
     at_rest: Floats,
     interior: Interior,
+    layout: BoneLayout | None,
 ) -> _Plan:
-    tips = _tips(analysis, graph, slices)
-    chains, hubs = _with_middle(chains_between(graph, slices, tips), tips, slices, centres)
+    part_of_tip = _tips(analysis, graph, slices, layout)
+    tips = set(part_of_tip)
+    bare = chains_between(graph, slices, tips)
+    chains, hubs = _with_middle(bare, _hubs(bare, part_of_tip, slices, centres, layout), tips, slices, centres)
     if not chains:
         raise LevelError(NO_LIMBS)
     root = _root(chains, hubs, slices)
+    if layout is not None:
+        known = root_of_layout(layout, chains, hubs, tips_on_sides(chains, part_of_tip))
+        root = known if known >= 0 else root
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
     nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
@@ -187,7 +211,19 @@ def _plan(
             way = np.linspace(0, 1, len(late) + 2)[1:-1, None]
             centres[:, late] = centres[:, last, None] + way * (place - centres[:, last])[:, None]
         ends.append(Ends(start, end, np.stack([hubs[start].places, place], axis=1), (parts[start], part)))
-    return _Plan(hubs, root, parts[root], order, ends, closes_loop, centres)
+    return _Plan(hubs, root, parts[root], order, ends, tips_on_sides(order, part_of_tip), closes_loop, centres)
+
+
+def _hubs(
+    chains: list[Chain], part_of_tip: dict[int, int], slices: Slices, centres: Floats, layout: BoneLayout | None
+) -> list[Hub]:
+    """Return the hubs: of a known layout those that lie between its limbs, else nodes that lie close together."""
+    if layout is None:
+        return gathered_hubs(chains, set(part_of_tip), slices, centres)
+    nodes = {end for chain in chains for end in (chain.start, chain.end)} - set(part_of_tip)
+    sides = zip(chains, tips_on_sides(chains, part_of_tip), strict=True)
+    joints = [chain for chain, both in sides if {chain.start, chain.end} <= nodes and not layout.is_split(both)]
+    return joined_hubs(nodes, joints, chains, slices, centres)
 
 
 def _crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) -> int | None:
@@ -217,8 +253,8 @@ def _reaching(last: Floats, extremum: Floats, interior: Interior) -> Floats:
     return last + reach * (extremum - last)
 
 
-def _tips(analysis: Analysis, graph: ReebGraph, slices: Slices) -> set[int]:
-    """Return the leaves of the graph that are tips of parts: of each part the most extreme one."""
+def _tips(analysis: Analysis, graph: ReebGraph, slices: Slices, layout: BoneLayout | None) -> dict[int, int]:
+    """Return the leaves of the graph that are tips, with their parts: of each part the most extreme one."""
     is_upper = np.zeros(len(graph.vertex), dtype=bool)
     is_upper[graph.arcs[:, 1]] = True
     leaves = np.flatnonzero((graph.degree == 1) & (is_upper | analysis.field.minima_are_features))
@@ -231,14 +267,16 @@ def _tips(analysis: Analysis, graph: ReebGraph, slices: Slices) -> set[int]:
         if not len(of_arc):
             continue
         part = int(slices.part[of_arc[-1] if is_upper[leaf] else of_arc[0]])
-        tips.setdefault(part, leaf)
-    return set(tips.values())
+        if layout is None or part in layout.tips or part not in layout.parts:
+            tips.setdefault(part, leaf)
+    return {leaf: part for part, leaf in tips.items()}
 
 
-def _with_middle(chains: list[Chain], tips: set[int], slices: Slices, centres: Floats) -> tuple[list[Chain], list[Hub]]:
+def _with_middle(
+    chains: list[Chain], hubs: list[Hub], tips: set[int], slices: Slices, centres: Floats
+) -> tuple[list[Chain], list[Hub]]:
     """Return chains and hubs; a single chain from tip to tip is given a hub in its middle."""
-    hubs = gathered_hubs(chains, tips, slices, centres)
-    if not hubs:
+    if not hubs and len(chains) == 1:
         (chain,) = chains
         length = np.cumsum(slices.length[chain.slices])
         half = min(int(np.searchsorted(length, length[-1] / 2)), len(length) - 1)
@@ -298,9 +336,7 @@ def _from_root(chains: list[Chain], hubs: list[Hub], root: int) -> tuple[list[Ch
     return order, closes_loop
 
 
-def _assembled(
-    analysis: Analysis, plan: _Plan, limbs: list[Limb], slices: Slices, interior: Interior, labels: NDArray[np.int32]
-) -> Skeleton:
+def _assembled(analysis: Analysis, plan: _Plan, limbs: list[Limb], slices: Slices, interior: Interior) -> Skeleton:
     """Put limbs together to a tree."""
     joint_of_hub = {plan.root: 0}
     joints, parent = [plan.hubs[plan.root].places[:1]], [np.array([-1])]

@@ -54,6 +54,30 @@ def gathered_hubs(chains: list[Chain], tips: set[int], slices: Slices, centres: 
         hubs = [*(hub for i, hub in enumerate(hubs) if i not in (first, second)), _united(hubs[first], hubs[second])]
 
 
+def joined_hubs(
+    nodes: set[int], joints: list[Chain], chains: list[Chain], slices: Slices, centres: Floats
+) -> list[Hub]:
+    """Return the hubs of a graph where it is known which chains lie within one.
+
+    Parameters
+    ----------
+    nodes : set of int
+        All but the tips.
+    joints : list of Chain
+        Each joins two nodes to one hub.
+    chains : list of Chain
+        All, those among them.
+    slices : Slices
+    centres : (P, S, 3) float64
+        Of the slices in each pose.
+    """
+    hub_of = {node: frozenset([node]) for node in nodes}
+    for chain in joints:
+        united = hub_of[chain.start] | hub_of[chain.end]
+        hub_of.update(dict.fromkeys(united, united))
+    return [_hub_at(hub, chains, slices, centres) for hub in sorted(set(hub_of.values()), key=min)]
+
+
 def hub_number(hubs: list[Hub], node: int) -> int:
     """Return the number of the hub that a node belongs to, -1 for a tip."""
     return next((number for number, hub in enumerate(hubs) if node in hub.nodes), -1)

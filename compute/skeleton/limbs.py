@@ -80,6 +80,10 @@ class Trace:
         Whether its first bone lies in the hub's part and carries the limb.
     point_of_slice : (s,) int64
         The point of the curve that each slice lies at.
+    borders : (b,) int64
+        Points at which the chain comes free of a hub or passes into another part.
+    parts : (n,) int64, optional
+        The part each bone lies in, if that is settled.
     """
 
     chain: Chain
@@ -88,6 +92,8 @@ class Trace:
     joints: Ints
     has_carrier: bool
     point_of_slice: Ints
+    borders: Ints
+    parts: Ints | None = None
 
 
 def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_pieces: int) -> Trace:
@@ -109,8 +115,9 @@ def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_piec
     last = len(curve.along) - 1
     point = np.minimum(np.searchsorted(curve.along, length), last)
     borders = _borders(chain, ends, slices, places, radius)
-    joints = joints_along(curve, np.unique(np.concatenate([[0], point[borders], [last]])), n_pieces)
-    return Trace(chain, ends, curve, joints, bool((borders == 1).any()), point[1:-1])
+    at_borders = np.setdiff1d(point[borders], [0, last])
+    joints = joints_along(curve, np.concatenate([[0], at_borders, [last]]), n_pieces)
+    return Trace(chain, ends, curve, joints, bool((borders == 1).any()), point[1:-1], at_borders)
 
 
 def with_equal_joints(traces: list[Trace], slices: Slices, partner: Ints) -> list[Trace]:
@@ -134,9 +141,10 @@ def lay_limb(trace: Trace, slices: Slices) -> Limb:
     """Return the bones along a chain."""
     chain, ends, curve, joints = trace.chain, trace.ends, trace.curve, trace.joints
     bone = np.searchsorted(joints[1:-1], trace.point_of_slice, side="right")
-    part = _main_parts(bone, slices.part[chain.slices], slices.length[chain.slices], len(joints) - 1, ends)
-    if trace.has_carrier:
-        part[0] = ends.parts[0]
+    part = trace.parts
+    if part is None:
+        part = _main_parts(bone, slices.part[chain.slices], slices.length[chain.slices], len(joints) - 1, ends)
+        part[0] = ends.parts[0] if trace.has_carrier else part[0]
     places = curve.places[0, joints].copy()
     for first in (np.flatnonzero(part[1:] != part[:-1]) + 1).tolist():
         if part[first - 1] == ends.parts[0]:
