@@ -17,7 +17,7 @@ demo: environment  ## segment the example character, or MESH=path, into pictures
 	@$(RUN) tools/demo.py $(if $(MESH),--mesh "$(MESH)") --output "$(OUTPUT)"
 
 test: environment  ## engine tests and Blender tests
-	@$(RUN) -m pytest -q
+	@OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest -q --numprocesses auto
 
 lint: environment  ## ruff and mypy
 	@$(RUN) -m ruff check .

@@ -3,6 +3,7 @@
 usage: python tools/test_matrix.py [VERSION...]
 """
 
+import os
 import platform
 import subprocess
 import sys
@@ -36,7 +37,7 @@ def _try(version: str) -> tuple[str, bool]:
         python = make_environment(ROOT / ".environments" / version, version)
     except SetUpError as error:
         return f"Blender {version}: {error}", False
-    tests, tests_passed = _run(python, "-m", "pytest", "-q", *TESTS)
+    tests, tests_passed = _run(python, "-m", "pytest", "-q", "--numprocesses", "auto", *TESTS)
     package, package_works = _run(python, "tools/try_package.py", _archive())
     told = f"Blender {version} (Python {BLENDERS[version][0]}): {tests}; from the zip: {package}"
     return f"{told} [{time.monotonic() - start:.0f} s in all]", tests_passed and package_works
@@ -44,7 +45,8 @@ def _try(version: str) -> tuple[str, bool]:
 
 def _run(python: Path, *arguments: str) -> tuple[str, bool]:
     """Run something, show what it prints, and return its last line and whether it went well."""
-    run = subprocess.run([python, *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    run = subprocess.run([python, *arguments], cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True)
     sys.stdout.write(run.stdout)
     lines = run.stdout.strip().splitlines()
     return lines[-1].strip("= ") if lines else "nothing", run.returncode == 0
