@@ -8,7 +8,7 @@ import numpy as np
 
 from . import engine
 from .exchange import OwnAttribute, own_names, read_own_integers, remove_own_attributes, write_attribute
-from .packing import packed, packed_array, unpacked, unpacked_array
+from .packing import UNREADABLE, packed, packed_array, unpacked, unpacked_array
 from .soundness import are_sound_branches, lie_within
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def first_own_part(state: Any) -> int:
     """Return the least number that no part of any level has."""
     try:
         return engine.number_behind(int(state["tree_0"]["n_roots"]), int(state["tree_0"]["n_features"]))
-    except (KeyError, TypeError, ValueError):
+    except UNREADABLE:
         return 0
 
 
@@ -94,20 +94,21 @@ def read_pieces(
     try:
         of_face = read_own_integers(mesh, PIECE)
         branches = tuple(
-            engine.Branches(of_face=of_face, **unpacked(group[f"branches_{i}"])) for i in range(len(hierarchy.trees))
+            engine.Branches(of_face=of_face, **unpacked(group[f"branches_{i}"], engine.Branches))
+            for i in range(len(hierarchy.trees))
         )
-        side, painted = unpacked_array(group["side"]), unpacked_array(group["painted"])
-        n_branches = len(branches[0].arc)
+        side, painted = unpacked_array(group["side"], "int64"), unpacked_array(group["painted"], "int64")
+        n_branches = branches[0].arc.size
         is_sound = (
             side.shape == (len(items), n_branches)
             and painted.shape == (n_branches,)
             and lie_within(painted, -1, first_own_part(state) + MOST_OWN_PARTS)
             and all(
-                len(pieces.arc) == n_branches and are_sound_branches(pieces, len(tree.parent))
+                pieces.arc.size == n_branches and are_sound_branches(pieces, tree.parent.size)
                 for pieces, tree in zip(branches, hierarchy.trees, strict=True)
             )
         )
-    except (KeyError, TypeError, ValueError, OverflowError):
+    except UNREADABLE:
         return None
     return (branches, engine.Corrections(items, side, painted)) if is_sound else None
 
@@ -131,7 +132,7 @@ def _item(row: Any) -> "Correction | None":
             int(row["level"]),
             str(row["mode"]),
         )
-    except (KeyError, TypeError, ValueError, OverflowError):
+    except UNREADABLE:
         return None
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from bpy.props import EnumProperty
 
 from . import correcting, corrections, engine, paint_part, registered, results, state
-from .exchange import read_mesh, read_own_integers
+from .exchange import read_mesh
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
 
@@ -71,7 +71,7 @@ def move_borders(mesh: bpy.types.Mesh) -> None:
     results.refuse_foreign_results(mesh)
     analysis = state.load(mesh)
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
-    labels = read_own_integers(mesh, results.PART)
+    labels = results.read_labels(mesh)
     moved = engine.shortened_borders(labels, _face_graph(mesh))
     if correcting.items_of(mesh):
         # Faces that were given to a part by hand do not follow arcs, so these are given to theirs in the same way.

@@ -9,7 +9,7 @@ import numpy as np
 from . import exchange, layers, state
 from .layers import STORAGES, Layer
 from .refusals import Refusal
-from .results import PART
+from .results import PART, read_labels
 
 # Attributes that begin with a point are Blender's own, but these are made by hand.
 MADE_BY_HAND = (".sculpt_face_set", ".sculpt_mask")
@@ -63,7 +63,7 @@ def _with_side(layer: Layer) -> Layer:
 def _parts(obj: bpy.types.Object) -> Iterator[Layer]:
     mesh = obj.data
     if PART.name in exchange.own_names(mesh) and PART.name in mesh.attributes:
-        yield Layer(layers.PARTS, PART.name, exchange.read_own_integers(mesh, PART).reshape(-1, 1), "INT")
+        yield Layer(layers.PARTS, PART.name, read_labels(mesh).reshape(-1, 1), "INT")
 
 
 def _chosen_groups(obj: bpy.types.Object, choice: Choice) -> list[str]:

@@ -1,12 +1,19 @@
-"""Arrays and records as what custom properties can hold: plain numbers and texts."""
+"""Arrays and records as what custom properties can hold: plain numbers and texts.
 
+A file may come from anywhere, so only what has the type that was written is read back, and nothing larger than it is.
+"""
+
+import math
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
+# What reading something else than was written may raise.
+UNREADABLE = (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError)
 _INT32 = np.iinfo(np.int32)
-_DTYPES = ("int64", "float64", "bool")
+# How Blender keeps the numbers of each type; lists of anything else are no arrays of ours.
+_TYPECODES = {"int64": "i", "float64": "dfi", "bool": "bi"}
 
 
 def packed(record: Any, rows: slice = slice(None)) -> dict[str, Any]:
@@ -26,14 +33,37 @@ def packed_array(array: np.ndarray) -> dict[str, Any]:
     return {"dtype": dtype, "shape": list(array.shape)} | ({"values": values.ravel().tolist()} if array.size else {})
 
 
-def unpacked(group: Any) -> dict[str, Any]:
-    """Return the fields of a packed record."""
-    return {name: unpacked_array(group[name]) if hasattr(group[name], "keys") else group[name] for name in group}
+def unpacked(group: Any, record: type) -> dict[str, Any]:
+    """Return the fields of a packed record; raises one of ``UNREADABLE`` if one is not what it holds.
+
+    What belongs to each face and what is a record of its own is left out.
+    """
+    held = {field.name: field.type for field in fields(record) if field.name != "of_face"}
+    scalars = {name: _number(group[name], kind) for name, kind in held.items() if kind in (bool, int, float)}
+    dtypes = {name: _dtype(kind) for name, kind in held.items() if name not in scalars and _dtype(kind)}
+    arrays = {name: unpacked_array(group[name], dtype) for name, dtype in dtypes.items()}
+    if not all(np.isfinite(array).all() for array in arrays.values()):
+        raise ValueError("not finite")
+    return scalars | arrays
 
 
-def unpacked_array(group: Any) -> np.ndarray:
-    """Return the array; raises ValueError, TypeError or KeyError if there is none."""
-    if group["dtype"] not in _DTYPES:
+def unpacked_array(group: Any, dtype: str) -> np.ndarray:
+    """Return the array; raises one of ``UNREADABLE`` if there is none of this type."""
+    values, shape = group.get("values"), group["shape"]
+    if group["dtype"] != dtype or getattr(shape, "typecode", None) != "i":
         raise ValueError(group["dtype"])
-    values = np.array(group.get("values", []), dtype=group["dtype"])
-    return values.reshape([int(size) for size in group["shape"]])
+    if values is not None and getattr(values, "typecode", "none") not in _TYPECODES[dtype]:
+        raise ValueError(type(values).__name__)
+    return np.array([] if values is None else values, dtype=dtype).reshape(list(shape))
+
+
+def _number(value: Any, kind: type) -> Any:
+    if not isinstance(value, int if kind in (bool, int) else int | float) or not math.isfinite(value):
+        raise TypeError(type(value).__name__)
+    return kind(value)
+
+
+def _dtype(annotation: Any) -> str:
+    """Return the name of the type of an array's numbers, nothing if it is no array."""
+    arguments = get_args(annotation)
+    return np.dtype(get_args(arguments[1])[0]).name if getattr(annotation, "__origin__", None) is np.ndarray else ""

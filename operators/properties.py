@@ -101,8 +101,9 @@ def _name(row: "EigenpartsPartRow") -> str:
 
 
 def _set_name(row: "EigenpartsPartRow", name: str) -> None:
-    part_table.rename(row.id_data, row.part, name)
-    _told(row.id_data, results.write_outputs)
+    if _told(row.id_data, state.summarize) is not None:
+        part_table.rename(row.id_data, row.part, name)
+        _told(row.id_data, results.write_outputs)
 
 
 def _colour(row: "EigenpartsPartRow") -> tuple[float, ...]:
@@ -110,8 +111,9 @@ def _colour(row: "EigenpartsPartRow") -> tuple[float, ...]:
 
 
 def _set_colour(row: "EigenpartsPartRow", colour: tuple[float, float, float]) -> None:
-    part_table.set_colour(row.id_data, row.part, tuple(colour))
-    _told(row.id_data, results.write_outputs)
+    if _told(row.id_data, state.summarize) is not None:
+        part_table.set_colour(row.id_data, row.part, tuple(colour))
+        _told(row.id_data, results.write_outputs)
 
 
 class EigenpartsPartRow(bpy.types.PropertyGroup):

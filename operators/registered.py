@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from .packing import UNREADABLE
 from .part_table import TABLES
 from .refusals import Refusal
 from .state import REGISTRATION, STATE
@@ -16,6 +17,8 @@ OWN_TABLES = "own_tables"
 REFERENCE_OBJECT = "reference_object"
 # Up to this confidence a matching may well be wrong.
 SURE = 0.5
+# More than are ever matched.
+MOST_FUNCTIONS = 1000
 
 NOT_REGISTERED = "The object is not registered; register it first."
 NOT_ITS_OWN = "The mesh shows the parts of another object, which have no borders here; move its level first."
@@ -87,7 +90,7 @@ def read(mesh: bpy.types.Mesh) -> Match | None:
     reference = reference_object(mesh)
     try:
         order, signs = (tuple(int(number) for number in group[name]) for name in ("order", "signs"))
-        return Match(
+        match = Match(
             reference=reference.name if reference is not None else str(group["reference"]),
             confidence=float(group["confidence"]),
             order=order,
@@ -100,8 +103,20 @@ def read(mesh: bpy.types.Mesh) -> Match | None:
             settings=group["settings"].to_dict(),
             by_diagrams=tuple(int(number) for number in group.get("by_diagrams", ())),
         )
-    except (AttributeError, KeyError, TypeError, ValueError):
+    except UNREADABLE:
         return None
+    return match if _makes_sense(match) else None
+
+
+def _makes_sense(match: Match) -> bool:
+    return (
+        len(match.order) == len(match.signs) <= MOST_FUNCTIONS
+        and len(match.flips) <= MOST_FUNCTIONS
+        and len(match.by_diagrams) <= MOST_FUNCTIONS
+        and all(sign in (-1, 1) for sign in (*match.signs, *match.flips.values()))
+        and 0 <= match.confidence <= 1
+        and 0 <= match.alternative <= match.n_alternatives
+    )
 
 
 def reference_object(mesh: bpy.types.Mesh) -> bpy.types.Object | None:

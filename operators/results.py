@@ -7,6 +7,7 @@ from . import correcting, corrections, engine, outputs, part_table, registered, 
 from .division import Division
 from .exchange import OwnAttribute, read_own_integers, refuse_foreign, write_attribute
 from .refusals import Refusal
+from .soundness import lie_within
 
 PART = OwnAttribute("part", "INT", "FACE")
 
@@ -98,9 +99,10 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
     softness : float, optional
         Width over which vertex groups are softened, in the mesh's unit; as before if None.
     """
+    state.summarize(mesh)
     names = set(outputs.chosen(mesh)) if names is None else names
     refuse_foreign(mesh, outputs.own_attributes(names))
-    labels = read_own_integers(mesh, PART)
+    labels = read_labels(mesh)
     outputs.choose(mesh, names, outputs.softness(mesh) if softness is None else softness)
     outputs.write(mesh, _division(mesh, labels))
     mesh.update()
@@ -109,6 +111,14 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
 def refuse_foreign_results(mesh: bpy.types.Mesh) -> None:
     """Raise a Refusal if something of the user's stands where a result belongs."""
     refuse_foreign(mesh, (PART, *state.ATTRIBUTES, *outputs.own_attributes(outputs.chosen(mesh))))
+
+
+def read_labels(mesh: bpy.types.Mesh) -> np.ndarray:
+    """Return the (F,) int32 part of each face; raises a Refusal if they are gone or cannot be parts."""
+    labels = read_own_integers(mesh, PART)
+    if not lie_within(labels, 0, state.MOST_LABELS):
+        raise Refusal(state.DAMAGED)
+    return labels
 
 
 def _division(mesh: bpy.types.Mesh, labels: np.ndarray) -> Division:

@@ -5,9 +5,9 @@ import bpy
 import numpy as np
 
 from . import part_table, state
-from .exchange import read_own_integers, remove_own_attributes
+from .exchange import remove_own_attributes
 from .refusals import Refusal, can_use_active_mesh, refusals_told
-from .results import PART
+from .results import read_labels
 
 
 class EIGENPARTS_OT_separate(bpy.types.Operator):
@@ -38,7 +38,7 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
     refers to it still does. The pieces keep the outputs that were chosen, and forget the analysis: it was of the whole.
     """
     mesh = obj.data
-    labels = read_own_integers(mesh, PART)
+    labels = read_labels(mesh)
     parts = np.unique(labels).tolist()
     if len(parts) < 2:
         raise Refusal("The mesh is one part; there is nothing to separate.")

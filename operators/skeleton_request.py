@@ -8,11 +8,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import engine, exchange, part_sides, part_table, state
+from . import bone_layout, engine, exchange, part_sides, part_table, state
 from .analysis_request import AnalysisRequest
 from .analyze import Ticket, find_mesh
 from .refusals import Refusal
-from .results import PART
+from .results import read_labels
 from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 
@@ -51,6 +51,8 @@ class BoneWish:
     pairing : dict
         Sides that are known from the mesh that this one is registered to; empty if there are none.
     needs_weights : bool
+    layout : BoneLayout or None
+        The bones of the mesh that this one is registered to.
     """
 
     labels: np.ndarray
@@ -59,6 +61,7 @@ class BoneWish:
     poses: tuple[np.ndarray, ...] = ()
     pairing: dict[int, tuple[int, int]] = field(default_factory=dict)
     needs_weights: bool = False
+    layout: "engine.BoneLayout | None" = None
 
 
 class SkeletonRequest(SkeletonOptions, AnalysisRequest):
@@ -78,7 +81,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
         obj = context.object
         arrays, options = self.read(context)
-        labels = exchange.read_own_integers(obj.data, PART)
+        labels = read_labels(obj.data)
         wish = BoneWish(
             labels,
             state.summarize(obj.data).level,
@@ -86,6 +89,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
             _other_poses(context),
             part_sides.of_reference(obj.data),
             self.needs_weights(),
+            bone_layout.of_reference(obj.data),
         )
         return partial(lay_bones, arrays, options, wish), Ticket(obj.data.session_uid, exchange.fingerprint(obj.data))
 
@@ -97,10 +101,19 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
         mesh = find_mesh(ticket)
         obj = _object_of(context, mesh)
         part_sides.remember(mesh, laid.pairing)
+        bone_layout.remember(mesh, laid.skeleton.layout)
         self.build(context, obj, laid)
-        for warning in laid.skeleton.warnings:
+        for warning in (*laid.skeleton.warnings, *_warnings_of_reference(mesh)):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
+
+
+def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
+    """Return what to tell of a registered mesh whose reference has no bones that it could be given."""
+    reference = bone_layout.reference_of(mesh)
+    if reference is None or bone_layout.read(reference.data) is not None:
+        return []
+    return [bone_layout.NO_BONES.format(reference.name)]
 
 
 def _object_of(context: bpy.types.Context, mesh: bpy.types.Mesh) -> bpy.types.Object:
@@ -128,7 +141,13 @@ def lay_bones(
     progress(0.9, "Laying bones")
     level = min(wish.level, analysis.hierarchy.n_levels - 1)
     skeleton = engine.skeleton(
-        analysis, level=level, labels=labels, poses=wish.poses, n_pieces=wish.n_pieces, partner=partner
+        analysis,
+        level=level,
+        labels=labels,
+        poses=wish.poses,
+        n_pieces=wish.n_pieces,
+        partner=partner,
+        layout=wish.layout,
     )
     progress(0.95, "Binding the mesh")
     weights = engine.binding_weights(analysis, skeleton) if wish.needs_weights else None

@@ -11,21 +11,24 @@ if TYPE_CHECKING:
 def is_sound(hierarchy: "Hierarchy", branches: tuple["Branches", ...]) -> bool:
     """Whether trees and branches fit each other."""
     n_features = hierarchy.n_levels - 1
-    if len({len(pieces.arc) for pieces in branches}) != 1:
+    if len({pieces.arc.size for pieces in branches}) != 1 or hierarchy.pairs.ndim != 2:
         return False
-    return len(hierarchy.pairs) == len(hierarchy.persistence) == len(hierarchy.is_maximum) == n_features and all(
+    columns = (hierarchy.pairs[:, :1].ravel(), hierarchy.persistence, hierarchy.is_maximum)
+    return all(column.shape == (n_features,) for column in columns) and all(
         _is_sound_tree(tree, n_features) and are_sound_branches(pieces, len(tree.parent))
         for tree, pieces in zip(hierarchy.trees, branches, strict=True)
     )
 
 
 def _is_sound_tree(tree: "ArcTree", n_features: int) -> bool:
-    n_arcs = len(tree.parent)
-    columns = (tree.part, tree.extremum, tree.saddle, tree.closing)
+    n_arcs = tree.parent.size
+    measures = (tree.height, tree.closing_length, tree.longest, tree.roundness)
+    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, *measures)
+    if not all(column.shape == (n_arcs,) for column in columns) or any((column < 0).any() for column in measures):
+        return False
     is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
     return (
-        all(column.shape == (n_arcs,) for column in columns)
-        and tree.n_features == n_features
+        tree.n_features == n_features
         and 0 <= tree.n_roots <= 2 * n_arcs
         and bool(is_later.all())
         and lie_within(tree.parent, -1, n_arcs)
@@ -35,10 +38,13 @@ def _is_sound_tree(tree: "ArcTree", n_features: int) -> bool:
 
 def are_sound_branches(branches: "Branches", n_arcs: int) -> bool:
     """Whether the tables of branches fit each other and a tree."""
-    n_branches = len(branches.arc)
+    n_branches = branches.arc.size
     return (
         branches.area.shape == branches.n_faces.shape == branches.arc.shape == (n_branches,)
-        and branches.borders.shape == (len(branches.border_length), 2)
+        and branches.borders.shape == (branches.border_length.size, 2)
+        and branches.border_length.ndim == 1
+        and lie_within(branches.n_faces, 0, len(branches.of_face) + 1)
+        and lie_within(branches.area, 0, np.inf)
         and lie_within(branches.arc, 0, n_arcs)
         and lie_within(branches.borders, 0, n_branches)
         and lie_within(branches.of_face, 0, n_branches)

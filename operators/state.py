@@ -21,7 +21,7 @@ from .exchange import (
     remove_own_attributes,
     write_attribute,
 )
-from .packing import packed, packed_array, unpacked, unpacked_array
+from .packing import UNREADABLE, packed, packed_array, unpacked, unpacked_array
 from .refusals import Refusal
 from .soundness import is_sound, lie_within
 
@@ -49,6 +49,9 @@ REGISTRATION = "registration"  # only while the mesh shows the parts of another
 OF_PARTS = ("part_numbers", "part_names", "part_colours", REGISTRATION)
 # How levels are read, the default first.
 MODES = ("nested", "features")
+# More than any mesh has, so that a damaged number makes no table that fills the memory.
+MOST_LABELS = 1 << 22
+LONGEST_DESCRIPTION = 200
 
 NEWER = "This mesh was analyzed by a newer version of Eigenparts; update the extension or analyze the mesh again."
 CUT = "The borders of this mesh were cut already; analyze it again to cut it at another level."
@@ -164,7 +167,7 @@ def load_source(mesh: bpy.types.Mesh) -> BorderSource:
     closing = closing_heights(mesh)
     try:
         n_inside = min(2, max(0, int(_current(mesh)["n_inside_edge"])))
-    except (KeyError, TypeError, ValueError) as error:
+    except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
     if ARCS[0].name not in mesh.attributes:
         raise Refusal(CUT)
@@ -187,11 +190,17 @@ def closing_heights(mesh: bpy.types.Mesh) -> tuple[np.ndarray, ...]:
     """Return for each tree the (A,) values of the field at which arcs close; raises a Refusal if they are not there."""
     state = _current(mesh)
     try:
-        heights = tuple(unpacked_array(state[f"closing_heights_{i}"]) for i in range(2 if "tree_1" in state else 1))
-        n_arcs = [len(unpacked_array(state[f"tree_{i}"]["parent"])) for i in range(len(heights))]
-    except (KeyError, TypeError, ValueError) as error:
+        heights = tuple(
+            unpacked_array(state[f"closing_heights_{i}"], "float64") for i in range(2 if "tree_1" in state else 1)
+        )
+        parents = [unpacked_array(state[f"tree_{i}"]["parent"], "int64") for i in range(len(heights))]
+    except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
-    if [one.shape for one in heights] != [(n,) for n in n_arcs]:
+    # Only a root closes nowhere.
+    if not all(
+        one.shape == parent.shape and np.isfinite(one[parent >= 0]).all()
+        for one, parent in zip(heights, parents, strict=True)
+    ):
         raise Refusal(DAMAGED)
     return heights
 
@@ -237,7 +246,7 @@ def load(mesh: bpy.types.Mesh) -> StoredAnalysis:
 def _sound_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
     try:
         analysis = _unpacked_analysis(mesh, state)
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
+    except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
     if not is_sound(analysis.hierarchy, analysis.branches):
         raise Refusal(DAMAGED)
@@ -262,12 +271,30 @@ def summarize(mesh: bpy.types.Mesh) -> Summary:
     """Return what the panel shows of the state; raises a Refusal if it cannot be read."""
     state = _current(mesh)
     try:
-        parts = unpacked(state["parts"])
-        share = parts["area"] / parts["area"].sum()
+        kinds = {"id": "int64", "area": "float64", "n_triangles": "int64"}
+        parts = {name: unpacked_array(state["parts"][name], dtype) for name, dtype in kinds.items()}
+        whole = parts["area"].sum()
+        if not 0 < whole < np.inf or parts["area"].min() < 0:
+            raise ValueError("area")
+        share = parts["area"] / whole
         rows = tuple(zip(parts["id"].tolist(), share.tolist(), parts["n_triangles"].tolist(), strict=True))
-        return Summary(str(state["description"]), int(state["level"]), int(state["hierarchy"]["n_levels"]), rows)
-    except (KeyError, TypeError, ValueError) as error:
+        summary = Summary(state["description"], state["level"], state["hierarchy"]["n_levels"], rows)
+    except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
+    if not _makes_sense(summary):
+        raise Refusal(DAMAGED)
+    return summary
+
+
+def _makes_sense(summary: Summary) -> bool:
+    return (
+        isinstance(summary.description, str)
+        and len(summary.description) <= LONGEST_DESCRIPTION
+        and isinstance(summary.level, int)
+        and isinstance(summary.n_levels, int)
+        and 0 <= summary.level < summary.n_levels
+        and all(0 <= part < MOST_LABELS and n_faces >= 0 for part, _, n_faces in summary.parts)
+    )
 
 
 def forget(mesh: bpy.types.Mesh) -> None:
@@ -308,11 +335,11 @@ def _has_trees(state: Any, hierarchy: "engine.Hierarchy") -> bool:
     """Whether a state has the parts of a hierarchy, under the same numbers."""
     try:
         return all(
-            np.array_equal(unpacked_array(state[f"tree_{i}"][column]), getattr(tree, column))
+            np.array_equal(unpacked_array(state[f"tree_{i}"][column], "int64"), getattr(tree, column))
             for i, tree in enumerate(hierarchy.trees)
             for column in ("part", "extremum")
         )
-    except (KeyError, TypeError, ValueError, OverflowError):
+    except UNREADABLE:
         return False
 
 
@@ -335,10 +362,12 @@ def _features(hierarchy: "engine.Hierarchy") -> slice:
 
 def _unpacked_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
     n_trees = 2 if "tree_1" in state else 1
-    trees = tuple(engine.ArcTree(**unpacked(state[f"tree_{i}"])) for i in range(n_trees))
-    hierarchy = engine.Hierarchy(**unpacked(state["hierarchy"]), trees=trees)
+    trees = tuple(engine.ArcTree(**unpacked(state[f"tree_{i}"], engine.ArcTree)) for i in range(n_trees))
+    hierarchy = engine.Hierarchy(**unpacked(state["hierarchy"], engine.Hierarchy), trees=trees)
     branches = tuple(
-        engine.Branches(of_face=read_own_integers(mesh, BRANCHES[i]), **unpacked(state[f"branches_{i}"]))
+        engine.Branches(
+            of_face=read_own_integers(mesh, BRANCHES[i]), **unpacked(state[f"branches_{i}"], engine.Branches)
+        )
         for i in range(n_trees)
     )
     return StoredAnalysis(hierarchy, branches)

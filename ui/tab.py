@@ -34,7 +34,8 @@ def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context
 
 def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
     """Draw a sentence in as many lines as the sidebar needs."""
-    n_letters = max(20, int(width / (7 * bpy.context.preferences.system.ui_scale)))
+    # Without a window the interface has no scale.
+    n_letters = max(20, int(width / (7 * (bpy.context.preferences.system.ui_scale or 1))))
     column = layout.column(align=True)
     column.alert = True
     line = ""
