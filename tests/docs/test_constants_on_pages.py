@@ -1,0 +1,77 @@
+"""Numbers that the pages give for constants of the engine are those of the code."""
+
+import re
+
+import pytest
+
+from compute import fields, shells
+from compute.fem import assembly
+from compute.registration import (
+    alignment,
+    correspondence,
+    deformation_graph,
+    part_matching,
+    selection,
+    spectral_shape,
+    transfer,
+    zoomout,
+)
+from compute.segmentation import hierarchy, nesting
+from compute.skeleton import bends, binding
+from tests.docs.pages import ROOT
+
+
+def percent(share):
+    return f"{100 * share:g} %"
+
+
+def power(number):
+    """Return 3e-6 for 3e-06."""
+    return re.sub(r"e-0", "e-", f"{number:g}")
+
+
+IN_WORDS = {4: "four", 1e-6: "a millionth"}
+METHOD = {
+    "slivers": f"Slivers count with {IN_WORDS[assembly.AREA_FLOOR]} of the mean",
+    "functions of the field": f"up to {fields.DIFFUSION_FUNCTIONS} functions",
+    "default level": f"above {percent(hierarchy.DEFAULT_THRESHOLD)} of the range",
+    "blunt": f"< {nesting.BLUNT:g} ",
+    "neck of the body": f"< {nesting.NECK:g} ",
+    "samples": f"at {spectral_shape.N_SAMPLES} points",
+    "sizes of the map": f"from {zoomout.MATCHING_SIZES[0]} to {zoomout.MATCHING_SIZES[-1]}",
+    "tearing": f"({selection.USUAL_TEARING:g} + τ)",
+    "doubtful cost": f"(cost / {power(selection.DOUBTFUL_COST)})²",
+    "least cost": f"(cost + {power(selection.LEAST_COST)})",
+    "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
+    "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",
+    "nodes": f"up to {correspondence.N_NODES} nodes",
+    "rounds": f"each of {len(alignment.ROUNDS)} rounds",
+    "sliding": f"{alignment.SLIDING:g}² |x' - y|²",
+    "lost": f"{alignment.TURN:g}² |n' - n|²) / {alignment.LOST:g}²",
+    "step": f"lengthened by {alignment.RELAXATION:g}",
+    "gap": f"(gap / {correspondence.DOUBTFUL_GAP:g})²",
+    "stretch": f"ln {correspondence.DOUBTFUL_STRETCH:g})⁴",
+    "joint": f"{bends.BEND:g} · number of joints",
+    "neck of a limb": f"thinner than {bends.NECK:g} of",
+    "softness": f"limb: {binding.SOFTNESS:g} of its radius",
+}
+LOOSE_PARTS = {
+    "detail": f"less than {percent(shells.LEAST_SHARE)} of the area",
+    "near": f"than {percent(shells.TOUCHING)} of the root",
+    "lying": f"{percent(shells.LYING_SHARE)} of its vertices nearer than {percent(shells.LYING)} of the root",
+}
+TROUBLESHOOTING = {"islands": f"more than {transfer.MOST_ISLANDS} islands"}
+PAGES = {
+    "docs/method.md": METHOD,
+    "docs/guide/loose_parts.md": LOOSE_PARTS,
+    "docs/guide/troubleshooting.md": TROUBLESHOOTING,
+}
+
+
+@pytest.mark.parametrize(
+    ("page", "told"),
+    [pytest.param(page, told, id=name) for page, numbers in PAGES.items() for name, told in numbers.items()],
+)
+def test_the_page_has_the_constant_of_the_code(page, told):
+    text = re.sub(r"(?<=\S)\n(?=\S)", " ", (ROOT / page).read_text())
+    assert told in text
