@@ -47,9 +47,9 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
     """Return one component of a mesh in a state that can be analyzed.
 
     Doubled vertices are welded where the mesh is open, so that seams and triangle soups hold together while closed
-    shells that merely touch stay apart; the ends of edges without length are welded everywhere. Triangles that lose a corner by it
-    and repeated triangles are left out. Zero-area triangles between three places stay: taking them out would tear the
-    surface.
+    shells that merely touch stay apart; the ends of edges without length are welded everywhere. Triangles that lose a
+    corner by it and repeated triangles are left out. Zero-area triangles between three places stay: taking them out
+    would tear the surface.
 
     Parameters
     ----------
