@@ -191,7 +191,7 @@ def _plan(
         raise LevelError(NO_LIMBS)
     root = _root(chains, hubs, slices)
     if layout is not None:
-        known = root_of_layout(layout, chains, hubs, tips_on_sides(chains, part_of_tip))
+        known = root_of_layout(layout, chains, hubs, tips_on_sides(chains, part_of_tip, hubs))
         root = known if known >= 0 else root
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
@@ -211,7 +211,7 @@ def _plan(
             way = np.linspace(0, 1, len(late) + 2)[1:-1, None]
             centres[:, late] = centres[:, last, None] + way * (place - centres[:, last])[:, None]
         ends.append(Ends(start, end, np.stack([hubs[start].places, place], axis=1), (parts[start], part)))
-    return _Plan(hubs, root, parts[root], order, ends, tips_on_sides(order, part_of_tip), closes_loop, centres)
+    return _Plan(hubs, root, parts[root], order, ends, tips_on_sides(order, part_of_tip, hubs), closes_loop, centres)
 
 
 def _hubs(

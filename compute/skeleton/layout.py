@@ -1,7 +1,7 @@
 """Which bones a skeleton has, told by parts, so that a registered shape can be given the same ones."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,20 +84,27 @@ def _layout_of_limb(trace: Trace, slices: Slices) -> LimbLayout:
     return LimbLayout(joints, borders, tuple(lay_limb(trace, slices).part.tolist()), trace.has_carrier)
 
 
-def tips_on_sides(chains: list[Chain], part_of_tip: Mapping[int, int]) -> list[tuple[Tips, Tips]]:
-    """Return the parts whose tips lie before the start and beyond the end of each chain of a tree."""
+def tips_on_sides(
+    chains: list[Chain], part_of_tip: Mapping[int, int], hubs: Sequence[Hub] = ()
+) -> list[tuple[Tips, Tips]]:
+    """Return the parts whose tips lie before the start and beyond the end of each chain of a tree.
+
+    The nodes of a hub are one place.
+    """
+    place = {node: ~number for number, hub in enumerate(hubs) for node in hub.nodes}
+    ends = [(place.get(chain.start, chain.start), place.get(chain.end, chain.end)) for chain in chains]
+    others = [[*ends[:row], *ends[row + 1 :]] for row in range(len(ends))]
     return [
-        (_tips_from(chain.start, chain, chains, part_of_tip), _tips_from(chain.end, chain, chains, part_of_tip))
-        for chain in chains
+        (_tips_from(start, left, part_of_tip), _tips_from(end, left, part_of_tip))
+        for (start, end), left in zip(ends, others, strict=True)
     ]
 
 
-def _tips_from(node: int, without: Chain, chains: list[Chain], part_of_tip: Mapping[int, int]) -> Tips:
-    reached, waiting = {node}, [node]
+def _tips_from(place: int, ends: list[tuple[int, int]], part_of_tip: Mapping[int, int]) -> Tips:
+    reached, waiting = {place}, [place]
     while waiting:
         at = waiting.pop()
-        leaving = [chain for chain in chains if chain is not without and at in (chain.start, chain.end)]
-        beyond = {end for chain in leaving for end in (chain.start, chain.end)} - reached
+        beyond = {end for both in ends if at in both for end in both} - reached
         reached |= beyond
         waiting.extend(beyond)
     return frozenset(part_of_tip[end] for end in reached if end in part_of_tip)
