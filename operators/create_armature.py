@@ -18,7 +18,10 @@ ROOT_LENGTH = 0.6
 STEEP = 0.9
 UP, FRONT = (0.0, 0.0, 1.0), (0.0, -1.0, 0.0)
 
-ALREADY_BOUND = "The object has an armature already; remove its Armature modifier first."
+ALREADY_BOUND = (
+    "The object has an armature already; remove its Armature modifier and the vertex groups of its bones first, "
+    "or choose None as weights for an armature beside it."
+)
 NOT_BOUND = "Blender found no automatic weights for this mesh; undo, and take the weights from the parts."
 
 

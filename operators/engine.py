@@ -83,6 +83,8 @@ _HOME = {
     "transfer_displacements": "registration.transfer",
     "section": "progress",
     "Skeleton": "skeleton.embedding",
+    "BoneLayout": "skeleton.layout",
+    "LimbLayout": "skeleton.layout",
     "skeleton": "skeleton.embedding",
     "binding_weights": "skeleton.binding",
     "mirror_parts": "skeleton.symmetry",

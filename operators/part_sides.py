@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import registered
+from . import bone_layout
 from .state import STATE
 
 # In the state: for each part that has a side, the part both sides are called after, and +1 for left, -1 for right.
@@ -16,11 +16,8 @@ def remember(mesh: bpy.types.Mesh, pairing: dict[int, tuple[int, int]]) -> None:
 
 def of_reference(mesh: bpy.types.Mesh) -> dict[int, tuple[int, int]]:
     """Return the sides of the mesh that this one is registered to; empty if it is not, or they are not known."""
-    match = registered.read(mesh)
-    reference = bpy.data.objects.get(match.reference) if match is not None else None
-    if reference is None or reference.type != "MESH":
-        return {}
-    return read(reference.data)
+    reference = bone_layout.reference_of(mesh)
+    return {} if reference is None else read(reference.data)
 
 
 def read(mesh: bpy.types.Mesh) -> dict[int, tuple[int, int]]:

@@ -19,13 +19,10 @@ from .layout import BoneLayout, Tips, layout_of, level_with_tips, root_of_layout
 from .limbs import Ends, Limb, lay_limb, trace_limb, with_equal_joints
 from .ownership import bones_of_vertices
 from .slices import Slices, centres_at_rest, centres_in_pose, slice_arcs
+from .tips import hidden_crown, reaching, tips_of_parts, widest_slice
 
 ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level."
 NO_LIMBS = "The parts of this level are too short for bones; choose another level."
-# How far a tip reaches from the last slice towards the extremum, as long as it stays inside.
-REACHES = (0.85, 0.7, 0.5, 0.3)
-# A middle line that never gets as far out as this fraction of its limb ends in a cavity.
-CAVITY = 0.82
 # Bones shorter than this fraction of the skeleton are none.
 SHORTEST_BONE = 2e-3
 # The hub in the middle of a shape that has only two ends: no node of the graph.
@@ -183,7 +180,7 @@ def _plan(
     interior: Interior,
     layout: BoneLayout | None,
 ) -> _Plan:
-    part_of_tip = _tips(analysis, graph, slices, layout)
+    part_of_tip = tips_of_parts(analysis, graph, slices, layout)
     tips = set(part_of_tip)
     bare = chains_between(graph, slices, tips)
     chains, hubs = _with_middle(bare, _hubs(bare, part_of_tip, slices, centres, layout), tips, slices, centres)
@@ -202,11 +199,11 @@ def _plan(
         if end >= 0:
             place, part = hubs[end].places, parts[end]
         else:
-            crown = _crown(chain, slices, centres[0], at_rest)
+            crown = hidden_crown(chain, slices, centres[0], at_rest)
             tip, last = nearest[chain.end], chain.slices[-1]
             if crown is not None:
-                tip, last = cKDTree(analysis.mesh.vertices).query(at_rest[crown])[1], _widest(chain, slices)
-            place, part = _reaching(centres[:, last], poses[:, tip], interior), -1
+                tip, last = cKDTree(analysis.mesh.vertices).query(at_rest[crown])[1], widest_slice(chain, slices)
+            place, part = reaching(centres[:, last], poses[:, tip], interior), -1
             late = chain.slices[1 + np.flatnonzero(chain.slices == last)[0] :]
             way = np.linspace(0, 1, len(late) + 2)[1:-1, None]
             centres[:, late] = centres[:, last, None] + way * (place - centres[:, last])[:, None]
@@ -224,52 +221,6 @@ def _hubs(
     sides = zip(chains, tips_on_sides(chains, part_of_tip), strict=True)
     joints = [chain for chain, both in sides if {chain.start, chain.end} <= nodes and not layout.is_split(both)]
     return joined_hubs(nodes, joints, chains, slices, centres)
-
-
-def _crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) -> int | None:
-    """Return the net triangle farthest from where a limb begins, if its extremum lies in a cavity such as a mouth.
-
-    A middle line that runs the length of a limb comes near its farthest point, even if it curls back.
-    """
-    is_own = np.zeros(slices.count, dtype=bool)
-    is_own[chain.slices] = True
-    own = np.flatnonzero(is_own[slices.of_triangle])
-    line = centres[chain.slices]
-    distance = np.linalg.norm(places[own] - line[0], axis=1)
-    farthest = int(distance.argmax())
-    reach = np.linalg.norm(line - line[0], axis=1).max()
-    return int(own[farthest]) if reach < CAVITY * distance[farthest] else None
-
-
-def _widest(chain: Chain, slices: Slices) -> int:
-    """Return the widest slice in the outer half of a chain: behind it the level sets close."""
-    outer = chain.slices[len(chain.slices) // 2 :]
-    return int(outer[slices.girth[outer].argmax()])
-
-
-def _reaching(last: Floats, extremum: Floats, interior: Interior) -> Floats:
-    """Return the places (P, 3) of a tip in all poses: as far towards the extremum as it stays inside at rest."""
-    reach = next((reach for reach in REACHES if interior.holds(last[:1] + reach * (extremum - last)[:1])[0]), 0.0)
-    return last + reach * (extremum - last)
-
-
-def _tips(analysis: Analysis, graph: ReebGraph, slices: Slices, layout: BoneLayout | None) -> dict[int, int]:
-    """Return the leaves of the graph that are tips, with their parts: of each part the most extreme one."""
-    is_upper = np.zeros(len(graph.vertex), dtype=bool)
-    is_upper[graph.arcs[:, 1]] = True
-    leaves = np.flatnonzero((graph.degree == 1) & (is_upper | analysis.field.minima_are_features))
-    arc_of = {node: arc for arc, ends in enumerate(graph.arcs.tolist()) for node in ends}
-    height = np.abs(analysis.field.values[graph.vertex] - np.median(analysis.field.values))
-    ranked = sorted(leaves.tolist(), key=lambda leaf: -height[leaf])
-    tips: dict[int, int] = {}
-    for leaf in ranked:
-        of_arc = slices.of_arc(arc_of[leaf])
-        if not len(of_arc):
-            continue
-        part = int(slices.part[of_arc[-1] if is_upper[leaf] else of_arc[0]])
-        if layout is None or part in layout.tips or part not in layout.parts:
-            tips.setdefault(part, leaf)
-    return {leaf: part for part, leaf in tips.items()}
 
 
 def _with_middle(

@@ -145,19 +145,44 @@ def test_curves_follow_the_bones(body):
     assert np.ptp(heads[:, 0]) > 1.4
 
 
-def test_bones_of_registered_characters_are_called_alike(body, human):
-    other = add_object(human.mesh_in_pose("arms_up"), human.quads, "other")
+@pytest.fixture
+def registered(body):
+    """The body, and a walking one with other faces that is registered to it."""
+    other = humanoid(5500)
+    walking = add_object(other.mesh_in_pose("walk"), other.quads, "walking")
     bpy.ops.object.select_all(action="SELECT")
     bpy.context.view_layer.objects.active = body
     bpy.ops.eigenparts.register_selected(order="1")
-    names = []
-    for obj in (body, other):
-        bpy.ops.object.select_all(action="DESELECT")
-        bpy.context.view_layer.objects.active = obj
-        obj.select_set(True)
-        bpy.ops.eigenparts.create_armature(order="1")
-        names.append({bone.name.split("_")[0] for bone in bpy.context.object.data.bones if "root" not in bone.name})
-    assert names[0] == names[1]
+    return body, walking
+
+
+def create_armature_of(obj):
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    bpy.ops.eigenparts.create_armature(order="1")
+    return bpy.context.object.data
+
+
+def tree(armature):
+    return {bone.name: bone.parent.name if bone.parent else None for bone in armature.bones}
+
+
+def test_registered_characters_have_the_same_bones(registered):
+    first, second = (tree(create_armature_of(obj)) for obj in registered)
+    assert len(first) >= 20
+    assert first == second
+
+
+def test_bones_that_the_reference_does_not_have_yet_are_told(registered, capfd):
+    create_armature_of(registered[1])
+    assert "human has no armature of Eigenparts yet" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"parts": 1}', '{"parts": [0], "root": [], "limbs": [{"tips": [1e999]}]}'])
+def test_a_damaged_layout_of_bones_is_passed_over(registered, text):
+    registered[0].data["eigenparts_state"]["bone_layout"] = text
+    assert len(create_armature_of(registered[1]).bones) > 5
 
 
 def test_the_armature_is_one_step_of_undo(body):
