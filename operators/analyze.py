@@ -12,6 +12,7 @@ import numpy as np
 from . import engine, exchange, function_hints, results, state
 from .analysis_request import AnalysisRequest
 from .refusals import Refusal
+from .rollback import all_or_nothing
 from .viewport import show_vertex_colours
 
 
@@ -51,9 +52,10 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
-        told = state.store(mesh, outcome.stored, outcome.source, outcome.description)
-        function_hints.store(mesh, outcome.hints)
-        labels = results.segment_mesh(mesh)
+        with all_or_nothing(mesh):
+            told = state.store(mesh, outcome.stored, outcome.source, outcome.description)
+            function_hints.store(mesh, outcome.hints)
+            labels = results.segment_mesh(mesh)
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
         for warning in (*outcome.warnings, *told, *labels.warnings):

@@ -69,12 +69,16 @@ def write_pieces(
     mesh: bpy.types.Mesh, state: Any, branches: tuple["Branches", ...], corrections: "Corrections"
 ) -> None:
     """Store branches that were divided for corrections."""
-    write_attribute(mesh, PIECE, branches[0].of_face)
-    state[PIECES] = {
+    tables = {
         **{f"branches_{i}": packed(pieces) for i, pieces in enumerate(branches)},
         "side": packed_array(corrections.side),
         "painted": packed_array(corrections.painted),
     }
+    # Without their tables pieces are made again, so whatever fails from here on leaves nothing that is not true.
+    if PIECES in state:
+        del state[PIECES]
+    write_attribute(mesh, PIECE, branches[0].of_face)
+    state[PIECES] = tables
 
 
 def drop_pieces(mesh: bpy.types.Mesh, state: Any) -> None:

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, IntProperty
 
 from . import correcting, corrections, engine, results, state
 from .correction_request import CorrectsParts, new_item, refuse_absent
-from .refusals import Refusal, can_use_active_mesh, refusals_told
+from .refusals import Refusal, can_use_active_mesh, is_linked, refusals_told
 from .select_part import selected_faces
 
 
@@ -22,7 +22,7 @@ class EIGENPARTS_OT_paint_part(CorrectsParts, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         # Faces are selected in edit mode, so the action is offered there too.
-        is_edited = context.mode == "EDIT_MESH" and context.object.data.library is None
+        is_edited = context.mode == "EDIT_MESH" and not is_linked(context.object.data)
         return (is_edited or can_use_active_mesh(cls, context)) and state.is_analyzed_for(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:

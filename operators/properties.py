@@ -18,7 +18,7 @@ from bpy.props import (
 
 from . import correcting, engine, outputs, part_table, results, state
 from .move_border import move_border, offset_of
-from .refusals import Refusal
+from .refusals import LINKED, Refusal, is_linked
 from .select_part import select_faces_of
 from .set_branch_level import set_branch_level
 
@@ -297,6 +297,9 @@ def _told(mesh: bpy.types.Mesh, action: Callable[..., Any], *arguments: Any) -> 
     """Do something to a mesh at once; a property cannot report, so the panel tells what went wrong."""
     status = bpy.context.window_manager.eigenparts
     status.problem, status.problem_of = "", mesh.name_full
+    if is_linked(mesh):
+        status.problem = LINKED
+        return None
     try:
         return action(mesh, *arguments)
     except (Refusal, engine.EngineError) as error:

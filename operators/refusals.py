@@ -8,6 +8,7 @@ import bpy
 from . import engine
 
 IN_EDIT_MODE = "Leave edit mode first; results are written to the mesh as a whole."
+LINKED = "The mesh is linked from another file; make it local first."
 
 
 class Refusal(Exception):  # noqa: N818 - nothing is broken: the user can mend it
@@ -38,6 +39,9 @@ def _objection(obj: bpy.types.Object | None) -> str:
         return "Select a mesh object first."
     if obj.mode == "EDIT":
         return IN_EDIT_MODE
-    if obj.data.library is not None:
-        return "The mesh is linked from another file; make it local first."
-    return ""
+    return LINKED if is_linked(obj.data) else ""
+
+
+def is_linked(mesh: bpy.types.Mesh) -> bool:
+    """Whether a mesh lies in another file, or overrides one there: what is written to such a mesh is not saved."""
+    return mesh.library is not None or mesh.override_library is not None

@@ -12,8 +12,9 @@ from .analysis_request import analysis_options
 from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
 from .properties import AnalysisOptions
-from .refusals import IN_EDIT_MODE, Refusal
+from .refusals import IN_EDIT_MODE, LINKED, Refusal, is_linked
 from .registration import SHOWN_FUNCTIONS, Found, Registration, Shown, Subject, Wish, register_subjects
+from .rollback import all_or_nothing
 from .viewport import show_vertex_colours
 
 SETTINGS = tuple(AnalysisOptions.__annotations__)
@@ -56,13 +57,8 @@ class Registers(BackgroundOperator):
         obj = _object(tickets.reference_uid)
         for mesh in (reference, *meshes):
             results.refuse_foreign_results(mesh)
-        _store(reference, registration.reference)
-        results.segment_mesh(reference, level=registration.level)
-        tables = registered.tables_of(reference)
-        for mesh, found in zip(meshes, registration.found, strict=True):
-            _store(mesh, found.outcome)
-            registered.remember(mesh, tables, match_of(found, obj.name, tickets.wish, tickets.settings), obj)
-            results.show_labels(mesh, found.labels, found.outcome.stored.branches, state.mode_of(mesh))
+        with all_or_nothing(reference, *meshes):
+            _write(reference, meshes, obj, tickets, registration)
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
         self._tell(obj.name, tickets.names, registration)
@@ -76,6 +72,22 @@ class Registers(BackgroundOperator):
         self.report({"INFO"}, f"Registered {n_objects} to {reference}; least sure: {name}, {lowest:.0%}.")
         if lowest <= registered.SURE:
             self.report({"WARNING"}, f"{name} is matched with a confidence of {lowest:.0%} only; look at its parts.")
+
+
+def _write(
+    reference: bpy.types.Mesh,
+    meshes: list[bpy.types.Mesh],
+    obj: bpy.types.Object,
+    tickets: Tickets,
+    registration: Registration,
+) -> None:
+    _store(reference, registration.reference)
+    results.segment_mesh(reference, level=registration.level)
+    tables = registered.tables_of(reference)
+    for mesh, found in zip(meshes, registration.found, strict=True):
+        _store(mesh, found.outcome)
+        registered.remember(mesh, tables, match_of(found, obj.name, tickets.wish, tickets.settings), obj)
+        results.show_labels(mesh, found.labels, found.outcome.stored.branches, state.mode_of(mesh))
 
 
 def _object(session_uid: int) -> bpy.types.Object:
@@ -104,8 +116,8 @@ def _read(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str,
     try:
         if mesh.is_editmode:
             raise Refusal(IN_EDIT_MODE)
-        if mesh.library is not None:
-            raise Refusal("The mesh is linked from another file; make it local first.")
+        if is_linked(mesh):
+            raise Refusal(LINKED)
         results.refuse_foreign_results(mesh)
         arrays = _arrays(context, obj, settings)
         options = {name: settings[name] for name in SETTINGS if name != "use_modifiers"}

@@ -15,7 +15,7 @@ from .layer_reading import Choice, read_layers
 from .layer_transferring import Body, Transferred, transfer_bodies
 from .layer_writing import Mix, refuse_obstacles, write_layers
 from .layers import PARTS, Layer
-from .refusals import IN_EDIT_MODE, Refusal, can_use_active_mesh
+from .refusals import IN_EDIT_MODE, LINKED, Refusal, can_use_active_mesh, is_linked
 from .register_selected import other_meshes
 from .state import is_analyzed
 
@@ -185,6 +185,8 @@ def _read(context: bpy.types.Context, obj: bpy.types.Object, source: bpy.types.O
     try:
         if mesh.is_editmode:
             raise Refusal(IN_EDIT_MODE)
+        if is_linked(mesh):
+            raise Refusal(LINKED)
         if use_modifiers:
             arrays = exchange.read_evaluated_mesh(obj, context.evaluated_depsgraph_get())
         else:

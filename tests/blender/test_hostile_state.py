@@ -1,0 +1,280 @@
+"""What is stored on a mesh may be damaged in any way: every operator works or says so, and every panel draws."""
+
+import ast
+import re
+import sys
+from pathlib import Path
+
+import bpy
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.blender.conftest import add_object, everything_on
+from tests.blender.damage import ATTRIBUTE_DAMAGES, STATE, damage, damage_attribute, damages_of, own_attributes
+from tests.blender.drawn import draw_panels
+
+ROOT = Path(__file__).resolve().parents[2]
+OUTPUTS = {"VERTEX_ATTRIBUTE", "CORNER_COLORS", "FACE_SETS", "VERTEX_GROUPS", "MATERIALS", "FIELD"}
+# Meshes are damaged one after the other; the fixtures stay the same.
+DAMAGED = settings(
+    deadline=None,
+    max_examples=60,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+
+
+@pytest.fixture(scope="module")
+def small_star():
+    from tests.shapes import star
+
+    return star(n_arms=5, n_subdivisions=2)
+
+
+@pytest.fixture
+def divided(small_star):
+    """A star with two trees, all outputs and a name and a colour of the user's."""
+    obj = add_object(small_star.vertices, small_star.triangles)
+    bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=4, order="1")
+    bpy.ops.eigenparts.segment(level=3)
+    bpy.ops.eigenparts.write_outputs(outputs=OUTPUTS, softness=0.1)
+    row = obj.data.eigenparts.rows[1]
+    row.title, row.color = "Mine", (0.1, 0.2, 0.3)
+    return obj
+
+
+@pytest.fixture
+def corrected(divided):
+    """The same with a split, a moved border and a painted part."""
+    first, second = (row.part for row in divided.data.eigenparts.rows if row.part in (1, 2))
+    bpy.ops.eigenparts.split_part(part=first, position=0.3)
+    bpy.ops.eigenparts.move_border(part=second, offset=-0.05)
+    divided.data.polygons.foreach_set("select", [face < 20 for face in range(len(divided.data.polygons))])
+    bpy.ops.eigenparts.paint_part(new=True)
+    assert len(divided.data.eigenparts.correction_rows) == 3
+    return divided
+
+
+@pytest.fixture
+def registered(divided, small_star):
+    """The same, registered to another."""
+    add_object(1.1 * small_star.vertices, small_star.triangles, "reference")
+    bpy.ops.eigenparts.analyze(order="1")
+    bpy.ops.eigenparts.register_selected(order="1")
+    bpy.context.view_layer.objects.active = divided
+    return divided
+
+
+@pytest.fixture
+def tracebacks(monkeypatch):
+    """What Python said in callbacks of properties, where Blender only prints it."""
+    told = []
+    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: told.append(repr(error)))
+    yield told
+    assert told == []
+
+
+def call(operator, **options):
+    """Call an operator; it may refuse in a sentence, but not break."""
+    sentence = ""
+    try:
+        getattr(bpy.ops.eigenparts, operator)(**options)
+    except RuntimeError as error:
+        sentence = str(error)
+    assert "Traceback" not in sentence, sentence
+    assert not sentence or ".poll()" in sentence or re.match(r"Error: .*[.!]\s*$", sentence, re.DOTALL), sentence
+
+
+def use_everything_that_reads(mesh):
+    """Draw the panels, set every property and call every quick operator."""
+    draw_panels()
+    shown = mesh.eigenparts
+    shown.active_part = 1
+    for name, value in {
+        **{"level": 2, "n_parts": 3, "mode": "FEATURES", "active_row": 1, "part_level": 2, "part_border": 0.1},
+        **{"vertex_attribute": False, "vertex_groups": False, "materials": False, "softness": 0.0, "field": True},
+    }.items():
+        setattr(shown, name, value)
+    if len(shown.rows):
+        shown.rows[0].title, shown.rows[-1].color = "Trunk", (0, 1, 0)
+    for operator, options in {
+        "segment": {"n_parts": 3, "mode": "NESTED"},
+        "write_outputs": {"outputs": OUTPUTS, "softness": 0.05},
+        "split_part": {"part": 1, "position": 0.5},
+        "move_border": {"part": 2, "offset": 0.1},
+        "merge_parts": {"part": 2, "into": 0},
+        "set_branch_level": {"part": 1, "level": 1},
+        "paint_part": {"part": 1},
+        "remove_correction": {"index": 0},
+        "clear_corrections": {},
+        "copy_report": {},
+        "select_part": {"part": 1},
+    }.items():
+        call(operator, **options)
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    draw_panels()
+
+
+def take_a_copy(obj, template):
+    """Put an undamaged mesh in place of the object's."""
+    used = obj.data
+    obj.data = template.copy()
+    if used.users == 0:
+        bpy.data.meshes.remove(used)
+    bpy.context.view_layer.objects.active = obj
+    return obj.data
+
+
+def hurt(mesh, place, kind):
+    if isinstance(place, str):
+        damage_attribute(mesh, place, kind)
+    else:
+        damage(mesh, place, kind)
+
+
+def all_damages(mesh):
+    return damages_of(mesh) + [(name, kind) for name in own_attributes(mesh) for kind in ATTRIBUTE_DAMAGES]
+
+
+@pytest.mark.parametrize("situation", ["divided", "corrected", "registered"])
+def test_whatever_is_damaged_everything_quick_works_or_refuses(request, situation, tracebacks):
+    obj = request.getfixturevalue(situation)
+    template = obj.data.copy()
+
+    @DAMAGED
+    @given(st.lists(st.sampled_from(all_damages(template)), min_size=1, max_size=2, unique_by=lambda one: one[0]))
+    def check(damages):
+        mesh = take_a_copy(obj, template)
+        for place, kind in damages:
+            try:
+                hurt(mesh, place, kind)
+            except (KeyError, TypeError):
+                # The first damage took away what the second was to hurt.
+                continue
+        use_everything_that_reads(mesh)
+
+    check()
+
+
+@pytest.mark.parametrize("method", ["INSERT", "EXISTING"])
+def test_whatever_is_damaged_a_cut_works_or_refuses(corrected, method, tracebacks):
+    template = corrected.data.copy()
+
+    @DAMAGED
+    @given(st.sampled_from(all_damages(template)))
+    def check(one):
+        mesh = take_a_copy(corrected, template)
+        hurt(mesh, *one)
+        call("cut", method=method)
+        assert not mesh.validate()
+
+    check()
+
+
+def test_whatever_is_damaged_parts_are_separated_or_left(divided, tracebacks):
+    template = divided.data.copy()
+
+    @DAMAGED
+    @given(st.sampled_from(all_damages(template)))
+    def check(one):
+        hurt(take_a_copy(divided, template), *one)
+        call("separate")
+        for obj in set(bpy.data.objects) - {divided}:
+            bpy.data.objects.remove(obj)
+
+    check()
+
+
+@pytest.mark.parametrize(
+    ("operator", "options"),
+    [
+        ("flip_function", {"number": 1}),
+        ("next_alternative", {}),
+        ("transfer", {"layers": {"GROUPS", "PARTS", "FACES"}}),
+        ("create_armature", {"order": "1"}),
+        ("create_skeleton_curves", {"order": "1"}),
+    ],
+)
+def test_whatever_is_damaged_longer_work_is_done_or_refused(registered, operator, options, tracebacks):
+    template = registered.data.copy()
+    told = [one for one in all_damages(template) if one[0][1:2] in (("registration",), ("part_names",), ("parts",))]
+
+    @settings(DAMAGED, max_examples=8)
+    @given(st.sampled_from(told))
+    def check(one):
+        hurt(take_a_copy(registered, template), *one)
+        before = set(bpy.data.objects)
+        call(operator, **options)
+        for obj in set(bpy.data.objects) - before:
+            bpy.data.objects.remove(obj)
+
+    check()
+
+
+def test_a_new_analysis_heals_any_damage(divided, tracebacks):
+    template = divided.data.copy()
+
+    @settings(DAMAGED, max_examples=25)
+    @given(st.sampled_from(damages_of(template)))
+    def check(one):
+        mesh = take_a_copy(divided, template)
+        hurt(mesh, *one)
+        if one[0] == ("eigenparts_attributes",):
+            # Attributes that are not known to be ours are the user's, and stay.
+            return
+        bpy.ops.eigenparts.analyze(order="1")
+        assert bpy.ops.eigenparts.segment(level=2) == {"FINISHED"}
+
+    check()
+
+
+def test_a_part_attribute_with_absurd_labels_is_refused(divided):
+    for kind in ("huge", "negative"):
+        damage_attribute(divided.data, "part", kind)
+        before = everything_on(divided.data)
+        for operator in ("write_outputs", "separate"):
+            with pytest.raises(RuntimeError, match="damaged"):
+                getattr(bpy.ops.eigenparts, operator)()
+        assert everything_on(divided.data) == before
+
+
+def test_a_shape_larger_than_its_numbers_allocates_nothing(divided):
+    divided.data[STATE]["branches_0"]["area"]["shape"] = [2**31 - 1, 2**31 - 1]
+    with pytest.raises(RuntimeError, match="damaged"):
+        bpy.ops.eigenparts.segment(level=1)
+
+
+FORBIDDEN_CALLS = {"eval", "exec", "compile", "__import__", "execfile"}
+FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "dill", "subprocess", "socket", "urllib", "http", "requests"}
+
+
+@pytest.mark.parametrize("folder", ["operators", "ui", "compute"])
+def test_nothing_read_from_a_file_can_be_run(folder):
+    """No code that a .blend reaches evaluates text, unpickles, starts programs or opens connections."""
+    trees = [ast.parse(path.read_text()) for path in (ROOT / folder).rglob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    called = {node.func.id for node in nodes if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+    modules = {alias.name.split(".")[0] for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    modules |= {(node.module or "").split(".")[0] for node in nodes if isinstance(node, ast.ImportFrom)}
+    assert len(trees) > 10
+    assert not called & FORBIDDEN_CALLS
+    assert not modules & FORBIDDEN_MODULES
+
+
+def test_a_hostile_file_touches_no_other_file(corrected, tmp_path):
+    """Opening, drawing and dividing with text for code and paths in the state opens no file but the .blend."""
+    state = corrected.data[STATE]
+    state["description"] = state["mode"] = "__import__('os').abort()"
+    state["part_names"] = {"1": "/etc/passwd", "2": "//../secret.txt"}
+    path = str(tmp_path / "hostile.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    opened, watching = [], True
+    sys.addaudithook(lambda event, values: opened.append(values[0]) if watching and event == "open" else None)
+    draw_panels()
+    bpy.ops.eigenparts.segment(level=2)
+    draw_panels()
+    watching = False
+    assert [name for name in opened if not str(name).endswith((".py", ".pyc"))] == []
