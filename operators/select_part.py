@@ -6,7 +6,7 @@ import numpy as np
 from bpy.props import BoolProperty, IntProperty
 
 from .exchange import read_own_integers
-from .refusals import can_use_active_mesh, refusals_told
+from .refusals import Refusal, can_use_active_mesh, refusals_told
 from .results import PART
 
 
@@ -31,6 +31,8 @@ class EIGENPARTS_OT_select_part(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.object.data
         with refusals_told(self):
+            if not bpy.ops.object.mode_set.poll():
+                raise Refusal("The object is hidden; show it first.")
             is_selected = read_own_integers(mesh, PART) == self.part
             _select_faces(mesh, is_selected | selected_faces(mesh) if self.extend else is_selected)
             context.tool_settings.mesh_select_mode = (False, False, True)

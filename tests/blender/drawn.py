@@ -46,6 +46,6 @@ def draw_panels():
         panel = getattr(bpy.types, f"EIGENPARTS_PT_{name}")
         if not hasattr(panel, "poll") or panel.poll(context):
             panel.draw(SimpleNamespace(layout=layout), context)
-    if context.object.data.eigenparts.rows:
+    if context.object and context.object.type == "MESH" and context.object.data.eigenparts.rows:
         bpy.types.EIGENPARTS_MT_merge.draw(SimpleNamespace(layout=layout), context)
     return layout.labels
