@@ -52,7 +52,7 @@ def reference_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
 def read(mesh: bpy.types.Mesh) -> "engine.BoneLayout | None":
     """Return the layout that a mesh remembers; None if there is none, or it makes no sense."""
     state = mesh.get(STATE)
-    text = state.get(LAYOUT) if hasattr(state, "keys") else None
+    text = state.get(LAYOUT) if hasattr(state, "to_dict") else None
     if not isinstance(text, str):
         return None
     try:

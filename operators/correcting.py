@@ -76,7 +76,11 @@ def crossings(mesh: bpy.types.Mesh, source: state.BorderSource) -> tuple["engine
     drawn = ()
     if engine.needs_faces(corrected.items):
         _, relief = _faces_of(mesh)
-        drawn = engine.drawn_borders(whole, source.closing_heights, corrected, labels.resting, relief)
+        try:
+            drawn = engine.drawn_borders(whole, source.closing_heights, corrected, labels.resting, relief)
+        except LookupError as error:
+            # A level that a correction says it was made at has not the part it changes.
+            raise Refusal(state.DAMAGED) from error
     cuts = engine.cut_arcs(base.hierarchy, base.branches, level, mode, corrected.branch_levels)
     joined = engine.joined_parts(corrected, labels.resting)
     return engine.corrected_crossings(source.profile, whole, source.closing_heights, cuts, drawn, joined)

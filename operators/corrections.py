@@ -27,11 +27,11 @@ MOST_OWN_PARTS = 1000
 
 def read(state: Any) -> tuple["Correction", ...]:
     """Return the corrections in a state, as far as they make sense; cheap enough for every redraw."""
-    group = state.get(CORRECTIONS) if hasattr(state, "keys") else None
-    if not hasattr(group, "keys"):
+    group = state.get(CORRECTIONS) if hasattr(state, "to_dict") else None
+    if not hasattr(group, "to_dict"):
         return ()
     rows = [group[name] for name in sorted(filter(str.isdecimal, group.keys()), key=int)]
-    items = [_item(row) for row in rows if hasattr(row, "keys")]
+    items = [_item(row) for row in rows if hasattr(row, "to_dict")]
     n_numbers = first_own_part(state) + MOST_OWN_PARTS
     return tuple(item for item in items if item is not None and _makes_sense(item, n_numbers))
 
@@ -93,7 +93,7 @@ def read_pieces(
 ) -> tuple[tuple["Branches", ...], "Corrections"] | None:
     """Return the divided branches; None if they are not there or damaged, so that they have to be made again."""
     group = state.get(PIECES)
-    if not hasattr(group, "keys") or PIECE.name not in own_names(mesh) or PIECE.name not in mesh.attributes:
+    if not hasattr(group, "to_dict") or PIECE.name not in own_names(mesh) or PIECE.name not in mesh.attributes:
         return None
     try:
         of_face = read_own_integers(mesh, PIECE)

@@ -26,7 +26,7 @@ def store(mesh: bpy.types.Mesh, hints: tuple["FunctionHint", ...]) -> None:
 def read(mesh: bpy.types.Mesh) -> list[tuple[int, int, int]]:
     """Return (number, protrusions held, protrusions of the shape) of each judged function, the best first."""
     state = mesh.get(STATE)
-    rows: Any = state.get(HINTS) if hasattr(state, "keys") else None
+    rows: Any = state.get(HINTS) if hasattr(state, "to_dict") else None
     if getattr(rows, "typecode", None) != "i" or len(rows) % 3:
         return []
     return [tuple(rows[k : k + 3]) for k in range(0, len(rows), 3)]

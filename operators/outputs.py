@@ -26,7 +26,7 @@ CHOSEN, SOFTNESS = "outputs", "softness"
 def chosen(mesh: bpy.types.Mesh) -> tuple[str, ...]:
     """Return which outputs the mesh is to have."""
     state = mesh.get(STATE)
-    names = state.get(CHOSEN) if hasattr(state, "keys") else None
+    names = state.get(CHOSEN) if hasattr(state, "to_dict") else None
     if not isinstance(names, str):
         return DEFAULT
     return tuple(name for name in OUTPUTS if name in names.splitlines())
@@ -35,7 +35,7 @@ def chosen(mesh: bpy.types.Mesh) -> tuple[str, ...]:
 def softness(mesh: bpy.types.Mesh) -> float:
     """Return the width over which vertex groups are softened, in the mesh's unit."""
     state = mesh.get(STATE)
-    width = state.get(SOFTNESS) if hasattr(state, "keys") else None
+    width = state.get(SOFTNESS) if hasattr(state, "to_dict") else None
     return max(0.0, float(width)) if isinstance(width, int | float) else 0.0
 
 

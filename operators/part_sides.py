@@ -23,8 +23,8 @@ def of_reference(mesh: bpy.types.Mesh) -> dict[int, tuple[int, int]]:
 def read(mesh: bpy.types.Mesh) -> dict[int, tuple[int, int]]:
     """Return the sides that a mesh remembers, as far as they can be understood."""
     state = mesh.get(STATE)
-    group = state.get(SIDES) if hasattr(state, "keys") else None
-    if not hasattr(group, "keys"):
+    group = state.get(SIDES) if hasattr(state, "to_dict") else None
+    if not hasattr(group, "to_dict"):
         return {}
     rows = {part: group[part] for part in group if part.isdecimal()}
     whole = {part: tuple(row) for part, row in rows.items() if getattr(row, "typecode", None) == "i" and len(row) == 2}

@@ -113,8 +113,8 @@ def _known(mesh: bpy.types.Mesh) -> list[int]:
 def _table(mesh: bpy.types.Mesh, name: str) -> dict[str, Any]:
     """Return one of the tables as far as it can be understood."""
     state = mesh.get(STATE)
-    group = state.get(name) if hasattr(state, "keys") else None
-    if not hasattr(group, "keys"):
+    group = state.get(name) if hasattr(state, "to_dict") else None
+    if not hasattr(group, "to_dict"):
         return {}
     values = {part: group[part] for part in group if part.isdecimal()}
     if name == NAMES:

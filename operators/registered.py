@@ -78,7 +78,7 @@ def take_back(mesh: bpy.types.Mesh) -> None:
     if group is None:
         return
     own = group.get(OWN_TABLES)
-    _set_tables(mesh, own.to_dict() if hasattr(own, "keys") else {})
+    _set_tables(mesh, own.to_dict() if hasattr(own, "to_dict") else {})
     del mesh[STATE][REGISTRATION]
 
 
@@ -141,14 +141,14 @@ def refuse_registered(mesh: bpy.types.Mesh) -> None:
 
 def _group(mesh: bpy.types.Mesh) -> Any:
     state = mesh.get(STATE)
-    group = state.get(REGISTRATION) if hasattr(state, "keys") else None
-    return group if hasattr(group, "keys") else None
+    group = state.get(REGISTRATION) if hasattr(state, "to_dict") else None
+    return group if hasattr(group, "to_dict") else None
 
 
 def tables_of(mesh: bpy.types.Mesh) -> dict[str, Any]:
     """Return the names and colours of the parts of an analyzed mesh, as they are stored."""
     state = mesh[STATE]
-    return {name: state[name].to_dict() for name in TABLES if hasattr(state.get(name), "keys")}
+    return {name: state[name].to_dict() for name in TABLES if hasattr(state.get(name), "to_dict")}
 
 
 def _set_tables(mesh: bpy.types.Mesh, tables: dict[str, Any]) -> None:

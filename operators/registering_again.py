@@ -5,14 +5,17 @@ file was loaded both meshes are analyzed again.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import bpy
 from bpy.props import StringProperty
 
 from . import background, registered
 from .refusals import Refusal, can_use_active_mesh
-from .registering import Registers, Tickets
+from .registering import SETTINGS, Registers, Tickets
 from .registration import Registration, Wish
+
+DAMAGED = "The registration stored on this mesh is damaged; register the selected meshes again."
 
 
 class RegistersAgain(Registers):
@@ -32,6 +35,8 @@ class RegistersAgain(Registers):
         reference = registered.reference_object(obj.data) or _mesh_object(context, match.reference)
         if reference.name not in context.view_layer.objects:
             raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
+        if not _are_settings(match.settings, context.scene.eigenparts.bl_rna.properties):
+            raise Refusal(DAMAGED)
         return self.start(context, reference, [obj], self.wish(match), match.settings)
 
     def wish(self, match: registered.Match) -> Wish:
@@ -42,6 +47,20 @@ class RegistersAgain(Registers):
 def given_flips(match: registered.Match) -> dict[int, int]:
     """Return the signs that the user gave before."""
     return {int(number): sign for number, sign in match.flips.items()}
+
+
+def _are_settings(stored: dict[str, Any], known: bpy.types.bpy_prop_collection) -> bool:
+    """Whether what is stored can be the options of an analysis."""
+    return all(name in stored and _can_be(stored[name], known[name]) for name in SETTINGS)
+
+
+def _can_be(value: Any, option: bpy.types.Property) -> bool:
+    if option.type == "ENUM":
+        return isinstance(value, str) and value in option.enum_items
+    if option.type == "STRING":
+        return isinstance(value, str)
+    # Blender may give truth back as a number.
+    return isinstance(value, int) and option.type in ("INT", "BOOLEAN") and value >= getattr(option, "hard_min", 0)
 
 
 def _mesh_object(context: bpy.types.Context, name: str) -> bpy.types.Object:

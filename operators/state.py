@@ -263,7 +263,7 @@ def remember_segmentation(mesh: bpy.types.Mesh, labels: "engine.BranchLabels", m
 def mode_of(mesh: bpy.types.Mesh) -> str:
     """Return the mode the mesh was last divided in, the default one if it never was."""
     state = mesh.get(STATE)
-    mode = state.get("mode") if hasattr(state, "keys") else None
+    mode = state.get("mode") if hasattr(state, "to_dict") else None
     return mode if mode in MODES else MODES[0]
 
 
@@ -306,11 +306,13 @@ def forget(mesh: bpy.types.Mesh) -> None:
 def _kept(mesh: bpy.types.Mesh, hierarchy: "engine.Hierarchy") -> dict[str, Any]:
     """Return what of an earlier state goes on with a new analysis."""
     state = mesh.get(STATE)
-    if not hasattr(state, "keys"):
+    if not hasattr(state, "to_dict"):
         return {}
     names = CHOICES + (OF_PARTS if _has_trees(state, hierarchy) else ())
     return {
-        name: state[name].to_dict() if hasattr(state[name], "keys") else state[name] for name in names if name in state
+        name: state[name].to_dict() if hasattr(state[name], "to_dict") else state[name]
+        for name in names
+        if name in state
     }
 
 
@@ -348,7 +350,7 @@ def _current(mesh: bpy.types.Mesh) -> Any:
     state = mesh.get(STATE)
     if state is None:
         raise Refusal(ABSENT)
-    if not hasattr(state, "keys") or not isinstance(state.get("schema"), int):
+    if not hasattr(state, "to_dict") or not isinstance(state.get("schema"), int):
         raise Refusal(DAMAGED)
     if state["schema"] > SCHEMA:
         raise Refusal(NEWER)

@@ -43,7 +43,7 @@ def _object_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
 
 def _own_groups(mesh: bpy.types.Mesh) -> dict[int, str]:
     stored = mesh.get(OWN_GROUPS)
-    if not hasattr(stored, "keys"):
+    if not hasattr(stored, "to_dict"):
         return {}
     return {int(part): stored[part] for part in stored if part.isdecimal() and isinstance(stored[part], str)}
 

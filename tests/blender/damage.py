@@ -1,5 +1,6 @@
 """Ways to damage what is stored on a mesh, for each thing that is stored."""
 
+import bpy
 import numpy as np
 
 STATE = "eigenparts_state"
@@ -45,7 +46,7 @@ def places(group, path=()):
     found = []
     for name in group:
         found.append((*path, name))
-        if hasattr(group[name], "keys"):
+        if hasattr(group[name], "to_dict"):
             found += places(group[name], (*path, name))
     return found
 
@@ -60,8 +61,8 @@ def damages_of(mesh):
     found = []
     for root in roots:
         value = mesh[root]
-        for path in [(root,), *places(value, (root,))] if hasattr(value, "keys") else [(root,)]:
-            found += [(path, kind) for kind in ("gone", *REPLACEMENTS)]
+        for path in [(root,), *places(value, (root,))] if hasattr(value, "to_dict") else [(root,)]:
+            found += [(path, kind) for kind in ("gone", "object", *REPLACEMENTS)]
             if is_list(at(mesh, path)):
                 found += [(path, kind) for kind in CHANGES]
     return found
@@ -79,6 +80,8 @@ def damage(mesh, path, kind):
     owner = at(mesh, path[:-1])
     if kind == "gone":
         del owner[path[-1]]
+    elif kind == "object":
+        owner[path[-1]] = bpy.context.object
     elif kind in CHANGES:
         owner[path[-1]] = CHANGES[kind](list(owner[path[-1]]))
     else:

@@ -24,7 +24,7 @@ def all_of(mesh):
 
 
 def plain(value):
-    if hasattr(value, "keys"):
+    if hasattr(value, "to_dict"):
         return {name: plain(value[name]) for name in sorted(value.keys())}
     return list(value) if hasattr(value, "typecode") else value
 
