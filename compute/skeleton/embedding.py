@@ -344,8 +344,8 @@ def _warnings(analysis: Analysis, n_loops: int) -> tuple[str, ...]:
     warnings = []
     if analysis.surface.n_components > 1:
         warnings.append(
-            f"The mesh has {analysis.surface.n_components} loose parts; the bones lie in the largest, the others follow"
-            " what is next to them."
+            f"The mesh has {analysis.surface.n_components} loose parts; the bones lie in {analysis.surface.n_joined} of"
+            " them, the others follow what is next to them."
         )
     if n_loops:
         handles = "a handle" if n_loops == 1 else f"{n_loops} handles"
