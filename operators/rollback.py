@@ -49,6 +49,8 @@ def _restore(mesh: bpy.types.Mesh, copy: bpy.types.Mesh) -> None:
         _restore_attribute(mesh, copy.attributes[name])
     for name in (STATE, OWN_ATTRIBUTES):
         _restore_property(mesh, copy, name)
+    # Newer versions keep the name of an active layer that is gone.
+    mesh.color_attributes.active_color_name = copy.color_attributes.active_color_name
     for name, fields in LISTS.items():
         if hasattr(mesh, "eigenparts"):
             _restore_list(getattr(mesh.eigenparts, name), getattr(copy.eigenparts, name), fields)
