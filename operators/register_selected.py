@@ -29,11 +29,7 @@ class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operat
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not background.can_start_job(cls) or not can_use_active_mesh(cls, context):
-            return False
-        if not other_meshes(context):
-            cls.poll_message_set(NOTHING_ELSE)
-        return bool(other_meshes(context))
+        return can_start_with_others(cls, context, NOTHING_ELSE)
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], Tickets]:
         targets = other_meshes(context)
@@ -41,6 +37,15 @@ class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operat
             raise Refusal(NOTHING_ELSE)
         settings = {name: getattr(self, name) for name in SETTINGS}
         return self.start(context, context.object, targets, Wish(mirrored=self.mirrored), settings)
+
+
+def can_start_with_others(operator: type[bpy.types.Operator], context: bpy.types.Context, nothing_else: str) -> bool:
+    """Return whether a job from the active mesh to others can start; if not, let the operator say why."""
+    if not background.can_start_job(operator) or not can_use_active_mesh(operator, context):
+        return False
+    if not other_meshes(context):
+        operator.poll_message_set(nothing_else)
+    return bool(other_meshes(context))
 
 
 def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:

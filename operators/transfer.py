@@ -8,15 +8,15 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
 
-from . import background, exchange, part_table, registered
+from . import exchange, part_table, registered
 from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
 from .layer_reading import Choice, read_layers
 from .layer_transferring import Body, Transferred, transfer_bodies
 from .layer_writing import Mix, refuse_obstacles, write_layers
 from .layers import PARTS, Layer
-from .refusals import IN_EDIT_MODE, LINKED, Refusal, can_use_active_mesh, is_linked
-from .register_selected import other_meshes
+from .refusals import IN_EDIT_MODE, LINKED, Refusal, is_linked
+from .register_selected import can_start_with_others, other_meshes
 from .state import is_analyzed
 
 NOTHING_ELSE = "Select the meshes to transfer to, and last the one to transfer from."
@@ -106,11 +106,7 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not background.can_start_job(cls) or not can_use_active_mesh(cls, context):
-            return False
-        if not other_meshes(context):
-            cls.poll_message_set(NOTHING_ELSE)
-        return bool(other_meshes(context))
+        return can_start_with_others(cls, context, NOTHING_ELSE)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """From the window: what the call leaves open is taken from the panel."""
