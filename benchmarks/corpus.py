@@ -155,18 +155,14 @@ def analyze(obj: Any) -> None:
 def every_level(obj: Any) -> None:
     """Show every level in both modes, and end at the default one."""
     import bpy
-
-    _select(obj)
-    for mode in ("FEATURES", "NESTED"):
-        for level in range(obj.data.eigenparts.n_parts and 1 + _highest_level(obj)):
-            bpy.ops.eigenparts.segment(level=level, mode=mode)
-    bpy.ops.eigenparts.segment()
-
-
-def _highest_level(obj: Any) -> int:
     from eigenparts.operators import state
 
-    return state.summarize(obj.data).n_levels - 1
+    _select(obj)
+    n_levels = state.summarize(obj.data).n_levels if state.is_analyzed(obj.data) else 0
+    for mode in ("FEATURES", "NESTED"):
+        for level in range(n_levels):
+            bpy.ops.eigenparts.segment(level=level, mode=mode)
+    bpy.ops.eigenparts.segment()
 
 
 def register(obj: Any) -> None:

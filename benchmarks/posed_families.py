@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 
 from compute.fem.lagrange import reference_element
 from compute.mesh import Floats, Ints, TriangleMesh
+from compute.registration.surface_points import nearest_in_triangles
 
 # Folder and stem of the files; the poses of a family share vertices and faces.
 FAMILIES = {
@@ -109,40 +110,11 @@ def closest_points(points: Floats, mesh: TriangleMesh) -> SurfacePoints:
     corners = mesh.vertices[mesh.triangles]
     places = (lattice @ corners).reshape(-1, 3)
     near = cKDTree(places).query(points, NEAR_PLACES)[1] // len(lattice)
-    barycentric = np.stack([_nearest_inside(points, corners[near[:, k]]) for k in range(NEAR_PLACES)], axis=1)
-    away = np.einsum("nkc,nkcj->nkj", barycentric, corners[near]) - points[:, None]
-    best = np.einsum("nkj,nkj->nk", away, away).argmin(axis=1)
+    found = [nearest_in_triangles(points, corners[near[:, k]]) for k in range(NEAR_PLACES)]
+    barycentric, away = (np.stack(values, axis=1) for values in zip(*found, strict=True))
+    best = away.argmin(axis=1)
     row = np.arange(len(points))
     return SurfacePoints(near[row, best], barycentric[row, best])
-
-
-def _nearest_inside(points: Floats, corners: Floats) -> Floats:
-    """Return (n, 3) the barycentric coordinates of the nearest point of the triangle (n, 3, 3) to each point."""
-    inside = _plane_coordinates(points, corners)
-    candidates = [_on_side(points, corners, k) for k in range(3)]
-    away = [np.linalg.norm(np.einsum("nc,ncj->nj", b, corners) - points, axis=1) for b in candidates]
-    on_border = np.stack(candidates, axis=1)[np.arange(len(points)), np.argmin(away, axis=0)]
-    return np.where((inside >= 0).all(axis=1)[:, None], inside, on_border)
-
-
-def _plane_coordinates(points: Floats, corners: Floats) -> Floats:
-    a, b, c = corners.swapaxes(0, 1)
-    u, v, w = b - a, c - a, points - a
-    uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", x, y) for x, y in ((u, u), (u, v), (v, v), (w, u), (w, v)))
-    determinant = uu * vv - uv * uv
-    determinant = np.where(determinant > 0, determinant, np.inf)
-    second, third = (vv * wu - uv * wv) / determinant, (uu * wv - uv * wu) / determinant
-    return np.stack([1 - second - third, second, third], axis=1)
-
-
-def _on_side(points: Floats, corners: Floats, side: int) -> Floats:
-    start, stop = corners[:, side], corners[:, (side + 1) % 3]
-    along = stop - start
-    squared = np.maximum(np.einsum("ij,ij->i", along, along), np.finfo(float).tiny)
-    place = np.clip(np.einsum("ij,ij->i", points - start, along) / squared, 0, 1)
-    coordinates = np.zeros((len(points), 3))
-    coordinates[:, side], coordinates[:, (side + 1) % 3] = 1 - place, place
-    return coordinates
 
 
 @dataclass(frozen=True, eq=False)

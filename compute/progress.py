@@ -22,6 +22,11 @@ def section(progress: Progress, start: float, stop: float) -> Progress:
     return report
 
 
+def naming(progress: Progress, name: str) -> Progress:
+    """Return a callback that tells of which object it speaks."""
+    return lambda fraction, text: progress(fraction, f"{name}: {text}")
+
+
 def rising(progress: Progress) -> Progress:
     """Return a callback that tells the highest fraction so far: an iteration's own estimate may fall back."""
     highest = 0.0

@@ -159,6 +159,8 @@ def _contract_short_edges(mesh: TriangleMesh, vertex_of_input: Ints) -> Ints:
     tails, heads = mesh.vertices[sides]
     shortest = SHORTEST_EDGE * np.sqrt(mesh.areas.mean())
     tails, heads = sides[:, np.abs(heads - tails).max(axis=1) <= shortest]
+    if not len(tails):
+        return vertex_of_input
     n_vertices = len(vertex_of_input)
     graph = coo_array((np.ones(len(tails), dtype=bool), (tails, heads)), shape=(n_vertices, n_vertices))
     _, first, piece = np.unique(connected_components(graph, directed=False)[1], return_index=True, return_inverse=True)

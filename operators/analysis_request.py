@@ -26,13 +26,14 @@ class AnalysisRequest(AnalysisOptions, BackgroundOperator):
 
     def read(self, context: bpy.types.Context) -> tuple[exchange.MeshArrays, dict[str, Any]]:
         """Return the active mesh, posed if that is wanted, and the keyword arguments of the engine."""
-        mesh = context.object.data
-        if self.use_modifiers:
-            arrays = exchange.read_evaluated_mesh(context.object, context.evaluated_depsgraph_get())
-        else:
-            arrays = exchange.read_mesh(mesh)
+        arrays = exchange.read_object(context, context.object, self.use_modifiers)
         options = analysis_options(
-            mesh, self.field, self.eigenfunction, self.attribute, order=self.order, boundary=self.boundary
+            context.object.data,
+            self.field,
+            self.eigenfunction,
+            self.attribute,
+            order=self.order,
+            boundary=self.boundary,
         )
         return arrays, options
 

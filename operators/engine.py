@@ -13,6 +13,8 @@ MISSING_SCIPY = (
 _HOME = {
     "EngineError": "errors",
     "Cancelled": "errors",
+    "naming": "progress",
+    "section": "progress",
     "TriangleMesh": "mesh",
     "Hierarchy": "segmentation.hierarchy",
     "ArcTree": "segmentation.arc_tree",
@@ -81,7 +83,6 @@ _HOME = {
     "taken_over": "registration.transfer",
     "transfer_corners": "registration.transfer",
     "transfer_displacements": "registration.transfer",
-    "section": "progress",
     "Skeleton": "skeleton.embedding",
     "BoneLayout": "skeleton.layout",
     "LimbLayout": "skeleton.layout",

@@ -77,6 +77,11 @@ def read_evaluated_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -
     return read_mesh(evaluated)
 
 
+def read_object(context: bpy.types.Context, obj: bpy.types.Object, use_modifiers: bool) -> MeshArrays:
+    """Return the mesh of an object, posed by its modifiers if that is wanted."""
+    return read_evaluated_mesh(obj, context.evaluated_depsgraph_get()) if use_modifiers else read_mesh(obj.data)
+
+
 def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
     """Return the (V,) values of a float attribute of the vertices."""
     attribute = mesh.attributes.get(name)

@@ -9,7 +9,7 @@ import numpy as np
 from . import engine, layers
 from .exchange import MeshArrays
 from .layers import Layer
-from .refusals import Refusal
+from .refusals import Refusal, in_name_of
 
 Progress = Callable[[float, str], None]
 
@@ -92,7 +92,7 @@ def transfer_bodies(
     results = []
     for number, (target, analysis) in enumerate(zip(targets, analyses[1:], strict=True)):
         part = engine.section(progress, 0.3 + 0.7 * number / len(targets), 0.3 + 0.7 * (number + 1) / len(targets))
-        found = _correspond(source, target, analyses[0], analysis, mirrored, _naming(part, target.name))
+        found = _correspond(source, target, analyses[0], analysis, mirrored, engine.naming(part, target.name))
         results.append(_transferred(found, analyses[0].mesh, analysis.mesh, (source, target), given, fills))
     return results
 
@@ -113,11 +113,9 @@ def _split_alike(source: Body, target: Body) -> Body:
 
 def _analyze(body: Body, progress: Progress) -> "engine.Analysis":
     """Return an analysis that is just enough for matching."""
-    try:
+    with in_name_of(body.name):
         mesh = engine.TriangleMesh(body.arrays.vertices, body.arrays.triangles)
-        return engine.analyze(mesh, n_functions=2, order=1, progress=_naming(progress, body.name))
-    except engine.EngineError as error:
-        raise Refusal(f"{body.name}: {error}") from error
+        return engine.analyze(mesh, n_functions=2, order=1, progress=engine.naming(progress, body.name))
 
 
 def _correspond(
@@ -192,8 +190,3 @@ class _Carrier:
         if not keeps_seams:
             self.torn_seams.append(layer.name)
         return values
-
-
-def _naming(progress: Progress, name: str) -> Progress:
-    """Return a callback that tells of which object it speaks."""
-    return lambda fraction, text: progress(fraction, f"{name}: {text}")

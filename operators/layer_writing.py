@@ -9,7 +9,7 @@ from . import corner_colours, engine, exchange, layers, state
 from .division import Division
 from .layer_reading import ABSOLUTE, read_attribute, read_key, read_weights
 from .layers import STORAGES, Layer
-from .refusals import Refusal
+from .refusals import Refusal, in_name_of
 from .results import PART
 
 # Weights below this are left out of a vertex group.
@@ -27,7 +27,7 @@ class Mix:
 
 def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> None:
     """Raise a Refusal that names the object if one of the layers cannot be written to it."""
-    try:
+    with in_name_of(obj.name):
         _refuse_linked(obj)
         if mix.mask and mix.mask not in obj.vertex_groups:
             raise Refusal(f'There is no vertex group "{mix.mask}" to be used as the mask.')
@@ -36,8 +36,6 @@ def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> Non
         new_uvs = {layer.name for layer in given if layer.is_uv} - {uv.name for uv in obj.data.uv_layers}
         if len(obj.data.uv_layers) + len(new_uvs) > MOST_UV_LAYERS:
             raise Refusal(f"A mesh can have {MOST_UV_LAYERS} UV maps; delete some first.")
-    except Refusal as refusal:
-        raise Refusal(f"{obj.name}: {refusal}") from refusal
 
 
 def _refuse_linked(obj: bpy.types.Object) -> None:

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, IntProperty
 
 from . import correcting, corrections, engine, results, state
 from .correction_request import CorrectsParts, new_item, refuse_absent
-from .refusals import Refusal, can_use_active_mesh, is_linked, refusals_told
+from .refusals import Refusal, can_use_active_mesh, is_linked
 from .select_part import selected_faces
 
 
@@ -28,11 +28,7 @@ class EIGENPARTS_OT_paint_part(CorrectsParts, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         if context.mode == "EDIT_MESH":
             bpy.ops.object.mode_set(mode="OBJECT")
-        with refusals_told(self):
-            correcting.refuse_uncorrectable(context.object.data)
-            self.correct(context.object.data)
-            return {"FINISHED"}
-        return {"CANCELLED"}
+        return super().execute(context)
 
     def correct(self, mesh: bpy.types.Mesh) -> None:
         faces = selected_faces(mesh)

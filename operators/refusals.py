@@ -24,6 +24,23 @@ def refusals_told(operator: bpy.types.Operator) -> Iterator[None]:
         operator.report({"ERROR"}, str(error))
 
 
+@contextmanager
+def in_name_of(name: str) -> Iterator[None]:
+    """Let refusals of ours and of the engine begin with the name of the object they are about."""
+    try:
+        yield
+    except (Refusal, engine.EngineError) as error:
+        raise Refusal(f"{name}: {error}") from error
+
+
+def refuse_unwritable(mesh: bpy.types.Mesh) -> None:
+    """Raise a Refusal if results cannot be written to a mesh."""
+    if mesh.is_editmode:
+        raise Refusal(IN_EDIT_MODE)
+    if is_linked(mesh):
+        raise Refusal(LINKED)
+
+
 def can_use_active_mesh(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """Whether the active object is a mesh that can be read and written; if not, the tooltip says why."""
     sentence = _objection(context.object)

@@ -12,7 +12,7 @@ from .analysis_request import analysis_options
 from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
 from .properties import AnalysisOptions
-from .refusals import IN_EDIT_MODE, LINKED, Refusal, is_linked
+from .refusals import Refusal, in_name_of, refuse_unwritable
 from .registration import SHOWN_FUNCTIONS, Found, Registration, Shown, Subject, Wish, register_subjects
 from .rollback import all_or_nothing
 from .viewport import show_vertex_colours
@@ -112,24 +112,12 @@ def _store(mesh: bpy.types.Mesh, outcome: Any) -> None:
 
 def _read(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str, Any]) -> Subject:
     """Return what of an object goes into the job, or say by its name why nothing can."""
-    mesh = obj.data
-    try:
-        if mesh.is_editmode:
-            raise Refusal(IN_EDIT_MODE)
-        if is_linked(mesh):
-            raise Refusal(LINKED)
-        results.refuse_foreign_results(mesh)
-        arrays = _arrays(context, obj, settings)
+    with in_name_of(obj.name):
+        refuse_unwritable(obj.data)
+        results.refuse_foreign_results(obj.data)
+        arrays = exchange.read_object(context, obj, settings["use_modifiers"])
         options = {name: settings[name] for name in SETTINGS if name != "use_modifiers"}
-        return Subject(obj.name, arrays, analysis_options(mesh, **options))
-    except Refusal as refusal:
-        raise Refusal(f"{obj.name}: {refusal}") from refusal
-
-
-def _arrays(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str, Any]) -> exchange.MeshArrays:
-    if settings["use_modifiers"]:
-        return exchange.read_evaluated_mesh(obj, context.evaluated_depsgraph_get())
-    return exchange.read_mesh(obj.data)
+        return Subject(obj.name, arrays, analysis_options(obj.data, **options))
 
 
 def _shown(mesh: bpy.types.Mesh) -> Shown:

@@ -11,7 +11,7 @@ from . import engine
 from .analyze import Outcome, outcome_of
 from .exchange import MeshArrays
 from .recent import Recent, key_of
-from .refusals import Refusal
+from .refusals import in_name_of
 from .state import StoredAnalysis
 
 # Functions whose signs can be given, and that are shown.
@@ -141,9 +141,9 @@ def register_subjects(
     first_free = max(first_free, int(labels.parts.id.max()) + 1)
     found = []
     for number, (subject, other) in enumerate(zip(targets, others, strict=True)):
-        told = _naming(_step(progress, len(targets) + 1 + number, n_steps), subject.name)
+        told = engine.naming(_step(progress, len(targets) + 1 + number, n_steps), subject.name)
         matching = _match(prepared, own.key, other, wish, told)
-        carrying = _part(told, 0.7, 1)
+        carrying = engine.section(told, 0.7, 1)
         found.append(_register(prepared, other.shape, other.outcome, matching, wish, first_free, carrying))
         first_free = max(first_free, int(found[-1].labels.parts.id.max()) + 1)
     progress(1.0, "Done")
@@ -165,17 +165,13 @@ def _examine(subject: Subject, progress: Progress) -> Examined:
     known = _recent_shapes.get(key)
     if known is not None:
         return known
-    told = _naming(progress, subject.name)
+    told = engine.naming(progress, subject.name)
     start = time.perf_counter()
-    try:
+    with in_name_of(subject.name):
         mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-        analysis = engine.analyze(mesh, **subject.options, progress=_part(told, 0, ANALYSIS_SHARE))
+        analysis = engine.analyze(mesh, **subject.options, progress=engine.section(told, 0, ANALYSIS_SHARE))
         outcome = outcome_of(analysis, arrays, subject.options, time.perf_counter() - start)
-        points = engine.matching_shape(analysis, _part(told, ANALYSIS_SHARE, 1))
-    except engine.Cancelled:
-        raise
-    except engine.EngineError as error:
-        raise Refusal(f"{subject.name}: {error}") from error
+        points = engine.matching_shape(analysis, engine.section(told, ANALYSIS_SHARE, 1))
     examined = Examined(key, engine.divisible(analysis, points, arrays.polygon_of_triangle), outcome)
     _recent_shapes.put(key, examined, len(points.positions))
     return examined
@@ -207,7 +203,7 @@ def _match(
     known = _recent_matchings.get(key)
     if known is None:
         known = engine.match_divisible(
-            reference, target.shape, flips=wish.flips, mirrored=wish.mirrored, progress=_part(progress, 0, 0.7)
+            reference, target.shape, flips=wish.flips, mirrored=wish.mirrored, progress=engine.section(progress, 0, 0.7)
         )
         _recent_matchings.put(key, known, 1)
     return known
@@ -231,16 +227,6 @@ def _register(
     return Found(outcome, labels, matching, alternative, n_others, tuple(by_diagrams.tolist()))
 
 
-def _part(progress: Progress, start: float, stop: float) -> Progress:
-    """Return a callback whose 0..1 is ``start``..``stop``."""
-    return lambda fraction, text: progress(start + (stop - start) * fraction, text)
-
-
 def _step(progress: Progress, number: int, n_steps: int) -> Progress:
     """Return a callback whose 0..1 is one of some equal steps."""
-    return _part(progress, number / n_steps, (number + 1) / n_steps)
-
-
-def _naming(progress: Progress, name: str) -> Progress:
-    """Return a callback that tells of which object it speaks."""
-    return lambda fraction, text: progress(fraction, f"{name}: {text}")
+    return engine.section(progress, number / n_steps, (number + 1) / n_steps)

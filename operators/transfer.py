@@ -15,7 +15,7 @@ from .layer_reading import Choice, read_layers
 from .layer_transferring import Body, Transferred, transfer_bodies
 from .layer_writing import Mix, refuse_obstacles, write_layers
 from .layers import PARTS, Layer
-from .refusals import IN_EDIT_MODE, LINKED, Refusal, is_linked
+from .refusals import Refusal, in_name_of, refuse_unwritable
 from .register_selected import can_start_with_others, other_meshes
 from .state import is_analyzed
 
@@ -177,19 +177,10 @@ def _transfer(
 
 def _read(context: bpy.types.Context, obj: bpy.types.Object, source: bpy.types.Object, use_modifiers: bool) -> Body:
     """Return what of an object goes into the job, or say by its name why nothing can."""
-    mesh = obj.data
-    try:
-        if mesh.is_editmode:
-            raise Refusal(IN_EDIT_MODE)
-        if is_linked(mesh):
-            raise Refusal(LINKED)
-        if use_modifiers:
-            arrays = exchange.read_evaluated_mesh(obj, context.evaluated_depsgraph_get())
-        else:
-            arrays = exchange.read_mesh(mesh)
-    except Refusal as refusal:
-        raise Refusal(f"{obj.name}: {refusal}") from refusal
-    return body_of(obj, arrays, *_wishes(mesh, source))
+    with in_name_of(obj.name):
+        refuse_unwritable(obj.data)
+        arrays = exchange.read_object(context, obj, use_modifiers)
+    return body_of(obj, arrays, *_wishes(obj.data, source))
 
 
 def body_of(

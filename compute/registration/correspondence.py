@@ -159,18 +159,25 @@ def _check(matching: Matching, source: SpectralShape, target: SpectralShape) -> 
 def _by_number(source: Analysis, target: Analysis, matching: Matching) -> Correspondence:
     """Return the map of vertices by their numbers; what has no triangles takes the nearest vertex that has."""
     triangles = target.mesh.triangles
-    n_vertices = len(target.mesh.vertices)
-    of_vertex, corner = _any_triangle(triangles, n_vertices)
-    confidence = np.ones(n_vertices)
-    lone = np.flatnonzero(of_vertex < 0)
-    if len(lone):
-        used = np.flatnonzero(of_vertex >= 0)
-        nearest = used[cKDTree(target.mesh.vertices[used]).query(target.mesh.vertices[lone])[1]]
-        of_vertex[lone], corner[lone], confidence[lone] = of_vertex[nearest], corner[nearest], 0.0
-    same_triangles = np.arange(len(triangles))
+    of_vertex, corner = _any_triangle(triangles, len(target.mesh.vertices))
+    is_used = of_vertex >= 0
+    known = _nearest_known(target.mesh.vertices, is_used)
+    found = SurfacePoints(of_vertex[known], np.eye(3)[corner[known]])
+    same_triangles, confidence = np.arange(len(triangles)), is_used.astype(np.float64)
     return Correspondence(
-        of_vertex, np.eye(3)[corner], same_triangles, confidence, matching, BY_NUMBER, source.mesh.triangles
+        found.triangles, found.barycentric, same_triangles, confidence, matching, BY_NUMBER, source.mesh.triangles
     )
+
+
+def _nearest_known(vertices: Floats, is_known: Bools) -> Ints:
+    """Return for each vertex (V, 3) itself or, if it is not known, the nearest in space that is."""
+    nearest = np.arange(len(vertices))
+    lone = np.flatnonzero(~is_known)
+    if len(lone):
+        known = np.flatnonzero(is_known)
+        # Vertices without faces may lie nowhere.
+        nearest[lone] = known[cKDTree(vertices[known]).query(np.nan_to_num(vertices[lone]))[1]]
+    return nearest
 
 
 def _any_triangle(triangles: Ints, n_vertices: int) -> tuple[Ints, Ints]:
@@ -251,12 +258,7 @@ def _rows(analysis: Analysis, shape: SpectralShape) -> tuple[Ints, Bools]:
     row[shape.node[is_vertex]] = np.flatnonzero(is_vertex)
     row = row[analysis.surface.vertex_of_input]
     is_analyzed = row >= 0
-    lone = np.flatnonzero(~is_analyzed)
-    if len(lone):
-        known = np.flatnonzero(is_analyzed)
-        finite = np.nan_to_num(vertices[lone])
-        row[lone] = row[known[cKDTree(vertices[known]).query(finite)[1]]]
-    return row, is_analyzed
+    return row[_nearest_known(vertices, is_analyzed)], is_analyzed
 
 
 def _on_input(pair: _Pair, points: SurfacePoints) -> SurfacePoints:
@@ -322,12 +324,7 @@ def _nearest_corner(points: SurfacePoints, triangles: Ints) -> Ints:
 def _by_faces(pair: _Pair, image: Ints, is_analyzed: Bools) -> Correspondence:
     """Return the map of vertices that are the same under other numbers."""
     source, target = pair.source, pair.target
-    vertex = image[target.surface.vertex_of_input]
-    lone = np.flatnonzero(~is_analyzed)
-    if len(lone):
-        known = np.flatnonzero(is_analyzed)
-        places = np.nan_to_num(target.mesh.vertices[lone])
-        vertex[lone] = vertex[known[cKDTree(target.mesh.vertices[known]).query(places)[1]]]
+    vertex = image[target.surface.vertex_of_input][_nearest_known(target.mesh.vertices, is_analyzed)]
     of_vertex, corner = _any_triangle(source.mesh.triangles, len(source.mesh.vertices))
     found = SurfacePoints(of_vertex[vertex], np.eye(3)[corner[vertex]])
     middles = source.surface.input_triangle[
