@@ -12,8 +12,8 @@ from .necks import LEAST_HEIGHT
 NECK = 0.81
 # And if it has at least this fraction of the area of the whole.
 LEAST_AREA = 0.05
-# A feature is worth a part if it stands out: all its level sets have less than this length²/area. A hemisphere has
-# 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
+# A feature is worth a part if it stands out: the least length²/area of its level sets is below this, area being what
+# they cut off, its tip left out. A hemisphere has 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
 BLUNT = 4.4
 
 
