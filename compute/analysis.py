@@ -7,7 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .errors import LevelError, MeshError
+from .errors import LevelError, RegistrationError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
 from .field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
 from .fields import DIFFUSION, Net, ScalarField, eigenfunction_field
@@ -25,9 +25,11 @@ from .segmentation.hierarchy import Hierarchy, build_hierarchy
 from .segmentation.necks import measured
 from .segmentation.parts import Segmentation, cut_arcs, label_branches
 from .segmentation.profile import EdgeProfile, edge_profile
+from .segmentation.shell_bodies import with_bodies
 from .segmentation.subparts import inserted
 from .segmentation.zero_level import divide_at_zero
-from .surface import SHELLS, Surface
+from .shell_fields import choose_fields
+from .surface import Surface, analyzed_surface, clean_surface
 
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.
@@ -38,6 +40,11 @@ LEAST_FACES_WITHIN = 8
 # higher order are used where linear ones have fewer.
 MATCHING_FUNCTIONS = 100
 MATCHING_UNKNOWNS = 3000
+
+APART = (
+    "Each loose part was analyzed by itself, so there is no one shape to be matched or to get bones; analyze the mesh"
+    " with its loose parts bridged, or the largest alone."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,10 +82,14 @@ class Analysis:
 
     @cached_property
     def eigenbasis(self) -> Eigenbasis:
-        """The eigenfunctions the field was made of; computed when first asked for if the field is the user's."""
+        """The eigenfunctions the field was made of; computed when first asked for if the field is the user's.
+
+        Those of the largest shell if each was analyzed by itself.
+        """
         if self._known_basis is not None:
             return self._known_basis
-        return solve_on_surface(self.surface, min(DEFAULT_FUNCTIONS, n_available(self.surface, "neumann")))
+        surface = clean_surface(self.mesh) if self.surface.is_apart else self.surface
+        return solve_on_surface(surface, min(DEFAULT_FUNCTIONS, n_available(surface, "neumann")))
 
     @property
     def matching_basis(self) -> Eigenbasis:
@@ -89,11 +100,23 @@ class Analysis:
         return self.find_matching_basis(silent)
 
     def find_matching_basis(self, progress: Progress) -> Eigenbasis:
-        """Return ``matching_basis``, telling how far it is if it has to be computed."""
+        """Return ``matching_basis``, telling how far it is if it has to be computed.
+
+        Raises
+        ------
+        RegistrationError
+            If each shell was analyzed by itself: there is no one shape to be matched.
+        """
+        self.require_one_shape()
         kept = vars(self)
         if "_matching_basis" not in kept:
             kept["_matching_basis"] = _solve_for_matching(self.surface, self._known_basis, progress)
         return kept["_matching_basis"]
+
+    def require_one_shape(self) -> None:
+        """Raise a RegistrationError if each shell was analyzed by itself: there is nothing to be matched or to move."""
+        if self.surface.is_apart:
+            raise RegistrationError(APART)
 
     @cached_property
     def complex(self) -> MorseSmaleComplex:
@@ -118,7 +141,7 @@ class Analysis:
 
     @cached_property
     def _ended_at_handles(self) -> "Analysis":
-        hierarchy, arcs = _hierarchy(self.field, self._topology, ends_at_handles=True)
+        hierarchy, arcs = _hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
         return dataclasses.replace(self, hierarchy=hierarchy, _arc_of_vertex=arcs)
 
     def branches(self, face_of_triangle: Ints | None = None) -> tuple[Branches, ...]:
@@ -240,8 +263,9 @@ def analyze(
     order : 1, 2, 3 or "auto"
         Degree of the finite elements; "auto" takes cubic ones as long as they are cheap.
     boundary : "neumann" or "dirichlet"
-    shells : "bridged" or "largest"
-        Whether loose parts are bridged where they nearly touch, or only the largest one is analyzed.
+    shells : "bridged", "largest" or "separate"
+        Whether loose parts are bridged where they nearly touch, only the largest one is analyzed, or each that is no
+        detail by itself, with parts of its own and what is left of it as a part of its own beside the body.
     progress : callable, optional
         ``progress(fraction, text)``; may raise :class:`Cancelled`.
 
@@ -252,22 +276,21 @@ def analyze(
     """
     progress = rising(progress or silent)
     progress(0.0, "Checking the mesh")
-    if shells not in SHELLS:
-        raise MeshError(f'Loose parts are "bridged" or the "largest" is taken, not "{shells}".')
-    surface = SHELLS[shells](mesh)
-    chosen = choose_field(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
+    surface = analyzed_surface(mesh, shells)
+    choose = choose_fields if surface.is_apart else choose_field
+    chosen = choose(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
     progress(0.8, "Finding the features")
     net = chosen.field.net
     topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
     progress(0.9, "Ordering the features")
-    hierarchy, arcs = _hierarchy(chosen.field, topology, ends_at_handles=False)
+    hierarchy, arcs = _hierarchy(surface, chosen.field, topology, ends_at_handles=False)
     progress(1.0, "Done")
     warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
     return Analysis(mesh, surface, chosen.field, hierarchy, warnings, field, topology, arcs, chosen.basis)
 
 
 def _hierarchy(
-    scalar_field: ScalarField, topology: FieldTopology, *, ends_at_handles: bool
+    surface: Surface, scalar_field: ScalarField, topology: FieldTopology, *, ends_at_handles: bool
 ) -> tuple[Hierarchy, tuple[Ints, ...]]:
     """Return the hierarchy with its necks measured, and the arcs of the net's vertices."""
     bare, arcs = build_hierarchy(
@@ -277,7 +300,17 @@ def _hierarchy(
         ends_at_handles=ends_at_handles,
     )
     trees = tuple(measured(tree, arc, scalar_field) for tree, arc in zip(bare.trees, arcs, strict=True))
-    return dataclasses.replace(bare, trees=trees), arcs
+    hierarchy = dataclasses.replace(bare, trees=trees)
+    if surface.is_apart:
+        hierarchy = with_bodies(hierarchy, _shell_of_vertex(surface, scalar_field.net))
+    return hierarchy, arcs
+
+
+def _shell_of_vertex(surface: Surface, net: Net) -> Ints:
+    """Return the shell (n,) of each vertex of a net; -1 for those in no triangle."""
+    shell = np.full(len(net.positions), -1)
+    shell[net.triangles] = surface.mesh.component_of_triangle[net.triangle_of_surface, None]
+    return shell
 
 
 def reeb_graph(analysis: Analysis, *, level: int | None = None) -> ReebGraph:
@@ -315,7 +348,8 @@ def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
     ----------
     .. [1] Reuter, IJCV 2010, section 5.1.
     """
-    return divide_at_zero(eigenfunction_field(analysis.eigenbasis, function), analysis.mesh, analysis.surface)
+    basis = analysis.eigenbasis
+    return divide_at_zero(eigenfunction_field(basis, function), analysis.mesh, basis.surface)
 
 
 def _solve_for_matching(surface: Surface, shown: Eigenbasis | None, progress: Progress) -> Eigenbasis:
@@ -374,10 +408,13 @@ def segment_part(own: Analysis, mode: str = "features") -> Segmentation:
 def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:
     warnings = []
     if surface.n_components > 1:
+        alone = ", each by itself" if surface.is_apart else ""
         warnings.append(
-            f"The mesh has {surface.n_components} loose parts; {surface.n_joined} of them were analyzed, the others"
-            " follow what is next to them."
+            f"The mesh has {surface.n_components} loose parts; {surface.n_joined} of them were analyzed{alone}, the"
+            " others follow what is next to them."
         )
-    if hierarchy.n_levels == 1:
+    if hierarchy.n_levels == 1 and surface.is_apart:
+        warnings.append("The loose parts have no features: each is one part.")
+    elif hierarchy.n_levels == 1:
         warnings.append("The shape has no features: it is one part.")
     return warnings

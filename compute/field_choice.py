@@ -49,6 +49,15 @@ def choose_field(
     return ChosenField(user_field(surface, choice), None)
 
 
+def resolved_order(order: int | str, surface: Surface) -> OrderChoice:
+    """Return the order that is asked for, or the one that a surface can afford."""
+    if not isinstance(order, str):
+        return OrderChoice(order)
+    if order != "auto":
+        raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')
+    return choose_order(surface.mesh)
+
+
 def n_available(surface: Surface, boundary: str) -> int:
     """Return a number of functions that elements of every order carry, one at least."""
     edges = surface.mesh.edges
@@ -62,7 +71,7 @@ def _diffusion(
 ) -> ChosenField:
     if name != DIFFUSION:
         raise FieldError(f'The field "{name}" does not exist; use "diffusion", a number or values of your own.')
-    chosen = _resolved(order, surface)
+    chosen = resolved_order(order, surface)
     # Whoever asks for a number of functions gets them; otherwise those without weight are not computed.
     largest_ratio = LARGEST_RATIO if n_functions is None else np.inf
     n_functions = n_functions or min(DIFFUSION_FUNCTIONS, n_available(surface, boundary))
@@ -75,18 +84,10 @@ def _diffusion(
 def _eigenfunction(
     surface: Surface, number: int, n_functions: int | None, order: int | str, boundary: str, progress: Progress
 ) -> ChosenField:
-    chosen = _resolved(order, surface)
+    chosen = resolved_order(order, surface)
     n_functions = max(n_functions or min(DEFAULT_FUNCTIONS, n_available(surface, boundary)), number)
     basis = solve_on_surface(surface, n_functions, order=chosen.order, boundary=boundary, progress=progress)
     return ChosenField(eigenfunction_field(basis, number), basis, _told(chosen))
-
-
-def _resolved(order: int | str, surface: Surface) -> OrderChoice:
-    if not isinstance(order, str):
-        return OrderChoice(order)
-    if order != "auto":
-        raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')
-    return choose_order(surface.mesh)
 
 
 def _told(chosen: OrderChoice) -> tuple[str, ...]:

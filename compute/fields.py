@@ -131,11 +131,15 @@ def refined_net(basis: Eigenbasis) -> Net:
     ----------
     .. [1] Reuter, IJCV 2010, section 4.2.
     """
-    cells = reference_element(basis.order).subdivision
-    triangles = basis.elements[:, cells].reshape(-1, 3)
-    of_surface = np.repeat(np.arange(len(basis.elements)), len(cells))
-    areas = basis.surface.mesh.areas[of_surface] / len(cells)
-    return Net(basis.nodes, triangles, of_surface, areas)
+    return net_of_elements(basis.nodes, basis.elements, basis.order, basis.surface)
+
+
+def net_of_elements(nodes: Floats, elements: Ints, order: int, surface: Surface) -> Net:
+    """Return the net through the nodes of elements of an order, one on each triangle of a surface."""
+    cells = reference_element(order).subdivision
+    triangles = elements[:, cells].reshape(-1, 3)
+    of_surface = np.repeat(np.arange(len(elements)), len(cells))
+    return Net(nodes, triangles, of_surface, surface.mesh.areas[of_surface] / len(cells))
 
 
 def _whole_eigenspaces(values: Floats) -> int:

@@ -1,4 +1,7 @@
-"""Shells that belong together: a character whose limbs are loose parts is bridged where they nearly touch."""
+"""Shells that belong together: a character whose limbs are loose parts is bridged where they nearly touch.
+
+And shells that are large enough to be divided each by itself.
+"""
 
 from dataclasses import dataclass
 
@@ -67,6 +70,12 @@ def bridge_shells(mesh: TriangleMesh) -> Bridges:
         feet.append(nearest[spanned])
         heads.append(asking[spanned])
     return _bridges(mesh, is_joined, feet, heads)
+
+
+def large_shells(mesh: TriangleMesh) -> Bools:
+    """Tell which shells (S,) are no details; the largest never is one."""
+    area = np.bincount(mesh.component_of_triangle, mesh.areas)
+    return (area >= LEAST_SHARE * area.sum()) | (np.arange(len(area)) == 0)
 
 
 def _bridges(mesh: TriangleMesh, is_joined: Bools, feet: list[Ints], heads: list[Ints]) -> Bridges:

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from .errors import MeshError
 from .mesh import Bools, Ints, TriangleMesh
-from .shells import bridge_shells
+from .shells import bridge_shells, large_shells
 
 # Edges shorter than this are collapsed; in units of the root of the mean area of a triangle.
 SHORTEST_EDGE = 1e-6
@@ -17,7 +17,7 @@ SHORTEST_EDGE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What is analyzed of an input mesh: a connected surface, welded and without collapsed or repeated triangles.
+    """What is analyzed of an input mesh: a surface, welded and without collapsed or repeated triangles.
 
     Attributes
     ----------
@@ -32,7 +32,9 @@ class Surface:
     n_components : int
         Components of the input after welding.
     n_joined : int
-        How many of them are analyzed together.
+        How many of them are analyzed.
+    is_apart : bool
+        Whether these are analyzed each by itself; otherwise the surface is connected.
     """
 
     mesh: TriangleMesh
@@ -41,6 +43,7 @@ class Surface:
     triangle_of_input: Ints
     n_components: int
     n_joined: int = 1
+    is_apart: bool = False
 
 
 def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
@@ -90,6 +93,21 @@ def bridged_surface(mesh: TriangleMesh) -> Surface:
     origin = np.append(surface.input_triangle, welded.input_triangle[bridges.pier])
     n_joined = int(bridges.is_joined.sum())
     return replace(surface, mesh=TriangleMesh(mesh.vertices, triangles), input_triangle=origin, n_joined=n_joined)
+
+
+def separate_surface(mesh: TriangleMesh) -> Surface:
+    """Return all components that are no details, for an analysis of each by itself; one alone is as in `clean_surface`.
+
+    Raises
+    ------
+    MeshError
+        If the mesh has no component of two triangles.
+    """
+    welded = _weld(mesh)
+    is_large = large_shells(welded.mesh)
+    surface = _surface_of(mesh, welded, is_large[welded.mesh.component_of_triangle])
+    n_shells = int(is_large.sum())
+    return replace(surface, n_joined=n_shells, is_apart=n_shells > 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,4 +206,17 @@ def _nearest_chosen(mesh: TriangleMesh, twin: Ints, chosen: Ints) -> Ints:
 
 
 # What can be done with a mesh of several shells.
-SHELLS = {"bridged": bridged_surface, "largest": clean_surface}
+SHELLS = {"bridged": bridged_surface, "largest": clean_surface, "separate": separate_surface}
+
+
+def analyzed_surface(mesh: TriangleMesh, shells: str) -> Surface:
+    """Return what is analyzed of a mesh if its shells are "bridged", the "largest" is taken or all are "separate".
+
+    Raises
+    ------
+    MeshError
+        If there is no such choice, or nothing that can be analyzed.
+    """
+    if shells not in SHELLS:
+        raise MeshError(f'Loose parts are "bridged", the "largest" is taken or they are "separate", not "{shells}".')
+    return SHELLS[shells](mesh)

@@ -22,12 +22,13 @@ class ArcTree:
         Whether the leaves are maxima (superlevel sets) or minima (sublevel sets).
     parent : (A,) int64
         The arc that goes on behind the saddle at which this one closes, always of larger index; -1 for the root.
+        Around each further shell that was analyzed by itself there is an arc that closes at no saddle.
     part : (A,) int64
         The part named after the most extreme leaf above the arc.
     extremum : (A,) int64
         That leaf, a net vertex.
     saddle : (A,) int64
-        Net vertex at which the arc closes; -1 for the root.
+        Net vertex at which the arc closes; -1 for the root, and where it is a whole shell.
     closing : (A,) int64
         The level from which on that saddle survives, less one: the place of its pair by falling persistence, the
         first of them if it has several, -1 where it survives always. The root has a number that no level reaches.
@@ -76,6 +77,22 @@ class ArcTree:
             if parent >= 0:
                 least[parent] = min(least[parent], least[arc], self.closing[arc])
         return least
+
+    @cached_property
+    def is_shell(self) -> Bools:
+        """(A,) which arcs are whole shells beside the first; they are parts at every level."""
+        return (self.saddle < 0) & (self.closing < 0)
+
+    @cached_property
+    def ground(self) -> Ints:
+        """(A,) the arc of the whole shell that each arc lies on; the root for the first shell."""
+        number = np.arange(len(self.parent))
+        return self.spread(np.where(self.is_shell | (self.parent < 0), number + 1, 0)) - 1
+
+    @property
+    def body(self) -> Ints:
+        """(A,) the part that is left of each arc's shell when all others are cut off: 0 on the first shell."""
+        return np.where(self.is_shell, self.part, 0)[self.ground]
 
     def is_cut(self, level: int) -> Bools:
         """Tell which arcs (A,) of surviving leaves a surviving saddle closes."""

@@ -61,7 +61,7 @@ class Polyline:
 
 
 def closing_heights(values: Floats, tree: ArcTree) -> Floats:
-    """Return (A,) the value of the field at which each arc closes; not a number for the root."""
+    """Return (A,) the value of the field at which each arc closes; not a number for the root and whole shells."""
     return np.where(tree.saddle < 0, np.nan, values[tree.saddle])
 
 

@@ -113,18 +113,21 @@ def divided_branches(branches: tuple[Branches, ...], code: Ints, graph: FaceGrap
     return divided, face
 
 
-def repaired_labels(labels: Ints, branches: Branches) -> Ints:
+def repaired_labels(labels: Ints, branches: Branches, bodies: tuple[int, ...] = (0,)) -> Ints:
     """Make every part connected: its largest piece stays, the others join the neighbour they share most border with.
 
     Parameters
     ----------
     labels : (B,) int64
-        Label of each branch, 0 for the body, which may be in pieces.
+        Label of each branch.
+    branches : Branches
+    bodies : tuple of int
+        Parts that may be in pieces: what is left of each shell.
     """
     labels = labels.copy()
     # A piece may join another stray piece, so this is repeated; every round leaves fewer pieces.
     for _ in range(len(labels)):
-        piece, is_stray = _stray_pieces(labels, branches)
+        piece, is_stray = _stray_pieces(labels, branches, bodies)
         joined = _best_neighbour(labels, piece, is_stray, branches)
         if not len(joined[0]):
             break
@@ -166,7 +169,7 @@ def _pieces(graph: FaceGraph, same: Bools) -> Ints:
     return connected_components(joined, directed=False)[1]
 
 
-def _stray_pieces(labels: Ints, branches: Branches) -> tuple[Ints, Bools]:
+def _stray_pieces(labels: Ints, branches: Branches, bodies: tuple[int, ...]) -> tuple[Ints, Bools]:
     """Return the connected piece of each branch among those of its label, and which pieces are not the largest."""
     left, right = branches.borders[labels[branches.borders[:, 0]] == labels[branches.borders[:, 1]]].T
     n = len(labels)
@@ -179,7 +182,7 @@ def _stray_pieces(labels: Ints, branches: Branches) -> tuple[Ints, Bools]:
     is_largest = np.append(label[order][1:] != label[order][:-1], True)
     is_stray = np.zeros(n_pieces, dtype=bool)
     is_stray[order[~is_largest]] = True
-    return piece, is_stray & (label > 0)
+    return piece, is_stray & ~np.isin(label, bodies)
 
 
 def _best_neighbour(labels: Ints, piece: Ints, is_stray: Bools, branches: Branches) -> tuple[Ints, Ints]:

@@ -98,11 +98,14 @@ class Labelling:
         By number of the part, the part it grows out of.
     resting : tuple of int
         The places of changes that had nothing to do.
+    bodies : tuple of int
+        Parts that may be in pieces: what is left of each shell.
     """
 
     of_branch: Ints
     parent: Ints
     resting: tuple[int, ...] = ()
+    bodies: tuple[int, ...] = (0,)
 
 
 def corrected(labelling: Labelling, branches: Branches, corrections: Corrections) -> Labelling:
@@ -117,7 +120,7 @@ def corrected(labelling: Labelling, branches: Branches, corrections: Corrections
             done = steps[item.kind](labelling, branches, item, side)
             resting += [row] if done is None else []
             labelling = done or labelling
-    whole = replace(labelling, of_branch=repaired_labels(labelling.of_branch, branches))
+    whole = replace(labelling, of_branch=repaired_labels(labelling.of_branch, branches, labelling.bodies))
     return _painted(whole, branches, corrections, resting)
 
 
@@ -181,7 +184,7 @@ def _painted(labelling: Labelling, branches: Branches, corrections: Corrections,
             if item.other:
                 parent[item.part] = _most_common(labelling.of_branch[rows], branches.area[rows])
             of_branch[rows] = item.part
-    return Labelling(of_branch, parent, tuple(resting))
+    return replace(labelling, of_branch=of_branch, parent=parent, resting=tuple(resting))
 
 
 def _most_common(labels: Ints, area: Floats) -> int:

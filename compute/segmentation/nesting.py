@@ -31,12 +31,12 @@ def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> 
     default_level : int
         Of the hierarchy.
     area : (A,) float64
-        Share of each arc in the whole area.
+        Share of each arc in the area of its shell.
     """
-    is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)), area)
+    is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)) & ~tree.is_shell, area)
     is_finer = tree.is_cut(level) & (tree.closing >= default_level)
     was_feature = tree.least_closing_inside > tree.closing
-    return is_cut | (is_finer & was_feature & (tree.roundness < BLUNT))
+    return is_cut | tree.is_shell | (is_finer & was_feature & (tree.roundness < BLUNT))
 
 
 def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
@@ -114,11 +114,11 @@ def _narrowing(border: Floats, longest: Floats, arc: int, meeting: list[int]) ->
 
 def _with_a_body(tree: ArcTree, is_cut: Bools, is_inner: Bools, area: Floats) -> Bools:
     """Leave the largest inner part to the body if only a belt would be left of it, as at a waist."""
-    region = tree.spread(np.where(is_cut, np.arange(1, len(area) + 1), 0))
+    region = tree.spread(np.where(is_cut | tree.is_shell, np.arange(1, len(area) + 1), 0))
     size = sum_by(region, area, len(area) + 1)
-    next_to_body = np.flatnonzero(is_inner & (region[tree.parent] == 0))
-    if size[0] >= LEAST_AREA or not len(next_to_body):
-        return is_cut
     kept = is_cut.copy()
-    kept[next_to_body[size[1 + next_to_body].argmax()]] = False
+    for body in (0, *(1 + np.flatnonzero(tree.is_shell))):
+        next_to_body = np.flatnonzero(is_inner & (region[tree.parent] == body))
+        if size[body] < LEAST_AREA and len(next_to_body):
+            kept[next_to_body[size[1 + next_to_body].argmax()]] = False
     return kept

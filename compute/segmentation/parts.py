@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import LevelError
 from ..mesh import Bools, Floats, Ints
+from .arc_tree import ArcTree
 from .borders import Polyline
 from .branches import Branches, repaired_labels
 from .corrections import LEVEL, Corrections, Labelling, corrected
@@ -201,12 +202,16 @@ def _cut_at_level(hierarchy: Hierarchy, branches: tuple[Branches, ...], level: i
     """Tell for each tree which arcs end a part."""
     if mode == "features":
         return [tree.is_feature(level) for tree in hierarchy.trees]
-    default_level, whole = hierarchy.default_level, branches[0].area.sum()
-    areas = [
-        sum_by(pieces.arc, pieces.area, len(tree.part)) / whole
-        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
-    ]
-    return [nested_cuts(tree, level, default_level, area) for tree, area in zip(hierarchy.trees, areas, strict=True)]
+    default_level = hierarchy.default_level
+    shares = [_shares_of_shells(tree, pieces) for tree, pieces in zip(hierarchy.trees, branches, strict=True)]
+    return [nested_cuts(tree, level, default_level, share) for tree, share in zip(hierarchy.trees, shares, strict=True)]
+
+
+def _shares_of_shells(tree: ArcTree, pieces: Branches) -> Floats:
+    """Return the share (A,) of each arc in the area of its shell."""
+    area = sum_by(pieces.arc, pieces.area, len(tree.part))
+    whole = sum_by(tree.ground, area)[tree.ground]
+    return area / np.where(whole > 0, whole, 1.0)
 
 
 def label_behind(
@@ -219,8 +224,9 @@ def label_behind(
     """Label all branches by the part that is cut off next to them, as given for each arc of each tree."""
     corrections = corrections or Corrections()
     origins = _origins(hierarchy, cuts)
-    of_branch = repaired_labels(_overlaid(cuts, hierarchy, branches), branches[0])
-    labelling = Labelling(of_branch, origins.parent, _resting_levels(cuts, corrections))
+    bodies = tuple(np.unique(hierarchy.trees[0].body).tolist())
+    of_branch = repaired_labels(_overlaid(cuts, hierarchy, branches), branches[0], bodies)
+    labelling = Labelling(of_branch, origins.parent, _resting_levels(cuts, corrections), bodies)
     if corrections.items:
         labelling = corrected(labelling, branches[0], corrections)
     parts = _tabulate(labelling, origins, branches[0])
@@ -235,11 +241,12 @@ def _resting_levels(cuts: list[Ints], corrections: Corrections) -> tuple[int, ..
 
 def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...]) -> Ints:
     """Return the label of each branch; where parts of maxima and of minima overlap, the smaller one lies on top."""
-    overlaid, size = np.zeros(len(branches[0].arc), dtype=np.int64), np.full(len(branches[0].arc), np.inf)
+    body = hierarchy.trees[0].body[branches[0].arc]
+    overlaid, size = body, np.full(len(body), np.inf)
     for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True):
         label = tree.spread(cut)[pieces.arc]
         area = sum_by(label, pieces.area)[label]
-        is_on_top = (label > BODY) & (area < size)
+        is_on_top = (label > BODY) & (label != body) & (area < size)
         overlaid, size = np.where(is_on_top, label, overlaid), np.where(is_on_top, area, size)
     return overlaid
 

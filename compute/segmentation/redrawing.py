@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import isnan
 
 import numpy as np
 
@@ -100,8 +101,11 @@ def hill_of(
         item = replace(origin.pop(item.part), kind=item.kind)
     branch_levels = tuple((other.part, int(other.value)) for other in items if other.kind == LEVEL)
     place = place_of(divided, item.part, item.level, item.mode, branch_levels)
-    tree = divided.hierarchy.trees[place.tree]
-    return place.tree, Hill(tree, place.arc, float(closing_heights[place.tree][place.arc]))
+    tree, border = divided.hierarchy.trees[place.tree], float(closing_heights[place.tree][place.arc])
+    if isnan(border):
+        # A whole shell ends nowhere.
+        raise LookupError(item.part)
+    return place.tree, Hill(tree, place.arc, border)
 
 
 def level_of_border(hill: Hill, item: Correction, value_range: float) -> float:

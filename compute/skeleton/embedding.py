@@ -102,11 +102,14 @@ def skeleton(
         If the level does not exist or has one part only.
     MeshError
         If a pose does not have the vertices of the mesh.
+    RegistrationError
+        If each shell was analyzed by itself.
 
     References
     ----------
     .. [1] Reuter, IJCV 2010, section 5.3 and Fig. 19.
     """
+    analysis.require_one_shape()
     if labels is None:
         labels = _labels_of_level(analysis, level, mode)
     if layout is not None:
