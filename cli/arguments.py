@@ -113,6 +113,12 @@ def _add_division(command: argparse.ArgumentParser) -> None:
         default="diffusion",
         help="diffusion (default), the number of an eigenfunction, or the name of a float attribute",
     )
+    command.add_argument(
+        "--shells",
+        choices=["bridged", "largest", "separate"],
+        default="bridged",
+        help="loose parts are analyzed with the largest where they prolong it (default), not at all, or each by itself",
+    )
     choice = command.add_mutually_exclusive_group()
     choice.add_argument("--level", metavar="N", type=int, help="how many features to keep")
     choice.add_argument("--threshold", metavar="X", type=float, help="least height of a feature, as a fraction")

@@ -1,5 +1,6 @@
 """What commands have in common that work on each mesh of a file."""
 
+import argparse
 from collections.abc import Callable
 from typing import Any
 
@@ -27,17 +28,19 @@ def report_each(objects: list[bpy.types.Object], work: Callable[[bpy.types.Objec
     return [_report(obj, work) for obj in objects]
 
 
-def settings_of_field(field: str) -> dict[str, Any]:
-    """Return the settings of the analysis for what was given as ``--field``."""
+def analysis_settings(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the settings of the analysis for the options that were given."""
+    field = options.field
     kind = "DIFFUSION" if field == "diffusion" else "EIGENFUNCTION" if field.isdecimal() else "ATTRIBUTE"
     number = int(field) if kind == "EIGENFUNCTION" else 1
     attribute = field if kind == "ATTRIBUTE" else ""
-    return {"field": kind, "eigenfunction": number, "attribute": attribute, "order": "AUTO", "boundary": "NEUMANN"}
+    field_settings = {"field": kind, "eigenfunction": number, "attribute": attribute}
+    return {**field_settings, "order": "AUTO", "boundary": "NEUMANN", "shells": options.shells.upper()}
 
 
-def engine_options(mesh: bpy.types.Mesh, field: str) -> dict[str, Any]:
-    """Return the keyword arguments of the engine for what was given as ``--field``."""
-    return analysis_options(mesh, **settings_of_field(field))
+def engine_options(mesh: bpy.types.Mesh, options: argparse.Namespace) -> dict[str, Any]:
+    """Return the keyword arguments of the engine for the options that were given."""
+    return analysis_options(mesh, **analysis_settings(options))
 
 
 def store(mesh: bpy.types.Mesh, outcome: Outcome) -> tuple[str, ...]:

@@ -38,6 +38,7 @@ PATIENCE = 10
 OPTIONS = {
     "--object": "object",
     "--field": "field",
+    "--shells": "shells",
     "--level": "level",
     "--threshold": "threshold",
     "--parts": "n_parts",

@@ -17,7 +17,7 @@ from ..operators.registering import match_of
 from ..operators.registration import Found, Wish, register_analyzed
 from . import formats
 from .finished import digest_of
-from .objects import chosen, engine_options, report_each, row_of, settings_of_field, store
+from .objects import analysis_settings, chosen, engine_options, report_each, row_of, store
 from .report import Report
 from .segmenting import choice_of
 
@@ -69,8 +69,9 @@ class Register:
         if not options.source.is_file():
             raise Refusal(f"the reference {options.source}: there is no such file.")
         source = {"file": options.source.name, "digest": digest_of(options.source), "object": options.reference}
-        given = {"object": options.object, "field": options.field, "mode": options.mode, "mirrored": options.mirrored}
-        return {"command": "register", **given, "choice": choice_of(options), "source": source}
+        given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
+        chosen_parts = {"choice": choice_of(options), "mirrored": options.mirrored}
+        return {"command": "register", **given, **chosen_parts, "source": source}
 
     def open_and_divide(self, path: Path) -> list[Report]:
         """Leave a file open with its meshes divided, and return a row for each."""
@@ -100,12 +101,12 @@ class Register:
         """Give a mesh the parts of the reference, which is an object of the same file or of another."""
         reference, mesh = self._reference, obj.data
         results.refuse_foreign_results(mesh)
-        analysis, outcome = _analyze(mesh, self._options.field)
+        analysis, outcome = _analyze(mesh, self._options)
         first_free = max(self._first_free, reference.highest_label + 1)
         found = register_analyzed(reference.prepared, analysis, outcome, self._wish, first_free)
         self._first_free = max(first_free, int(found.labels.parts.id.max()) + 1)
         warnings = store(mesh, outcome)
-        settings = {**settings_of_field(self._options.field), "use_modifiers": False}
+        settings = {**analysis_settings(self._options), "use_modifiers": False}
         match = match_of(found, reference.name, self._wish, settings)
         registered.remember(mesh, reference.tables, match, reference_object)
         results.show_labels(mesh, found.labels, outcome.stored.branches, reference.mode)
@@ -125,7 +126,7 @@ def _prepare(options: argparse.Namespace) -> Reference:
     registered.refuse_registered(mesh)
     mode = options.mode or state.mode_of(mesh)
     shown = _shown_level(mesh)
-    analysis, outcome = _analyze(mesh, options.field)
+    analysis, outcome = _analyze(mesh, options)
     store(mesh, outcome)
     choice = choice_of(options) or ({"level": shown} if shown is not None else {})
     labels = results.segment_mesh(mesh, mode=mode, **choice)
@@ -145,8 +146,8 @@ def _shown_level(mesh: bpy.types.Mesh) -> int | None:
         return None
 
 
-def _analyze(mesh: bpy.types.Mesh, field: str) -> tuple["engine.Analysis", Outcome]:
+def _analyze(mesh: bpy.types.Mesh, given: argparse.Namespace) -> tuple["engine.Analysis", Outcome]:
     start = time.perf_counter()
-    arrays, options = exchange.read_mesh(mesh), engine_options(mesh, field)
+    arrays, options = exchange.read_mesh(mesh), engine_options(mesh, given)
     analysis = engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options)
     return analysis, outcome_of(analysis, arrays, options, time.perf_counter() - start)

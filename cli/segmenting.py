@@ -24,9 +24,8 @@ class Segment:
     def settings(self) -> Report:
         """What the results depend on besides the files."""
         options = self._options
-        return {"command": "segment", "object": options.object, "field": options.field, "mode": options.mode} | {
-            "choice": choice_of(options)
-        }
+        given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
+        return {"command": "segment", **given, "choice": choice_of(options)}
 
     def open_and_divide(self, path: Path) -> list[Report]:
         """Leave a file open with its meshes divided, and return a row for each."""
@@ -35,7 +34,7 @@ class Segment:
     def _divide(self, obj: bpy.types.Object) -> Report:
         mesh = obj.data
         results.refuse_foreign_results(mesh)
-        outcome = analyze_arrays(exchange.read_mesh(mesh), engine_options(mesh, self._options.field), silent)
+        outcome = analyze_arrays(exchange.read_mesh(mesh), engine_options(mesh, self._options), silent)
         warnings = store(mesh, outcome)
         labels = results.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))
         return row_of(obj, labels, outcome, warnings)

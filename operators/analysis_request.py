@@ -34,12 +34,13 @@ class AnalysisRequest(AnalysisOptions, BackgroundOperator):
             self.attribute,
             order=self.order,
             boundary=self.boundary,
+            shells=self.shells,
         )
         return arrays, options
 
 
 def analysis_options(
-    mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str
+    mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str, shells: str
 ) -> dict[str, Any]:
     """Return the keyword arguments of the engine for the settings of the user."""
     choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": eigenfunction}
@@ -47,4 +48,5 @@ def analysis_options(
         "field": exchange.read_vertex_floats(mesh, attribute) if field == "ATTRIBUTE" else choice[field],
         "order": "auto" if order == "AUTO" else int(order),
         "boundary": boundary.lower(),
+        "shells": shells.lower(),
     }

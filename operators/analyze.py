@@ -78,7 +78,8 @@ def outcome_of(
     analysis: "engine.Analysis", arrays: exchange.MeshArrays, options: dict[str, Any], seconds: float
 ) -> Outcome:
     """Return what of an analysis is left for the mesh; knows nothing of Blender either."""
-    stored = state.StoredAnalysis(analysis.hierarchy, analysis.branches(arrays.polygon_of_triangle))
+    branches = analysis.branches(arrays.polygon_of_triangle)
+    stored = state.StoredAnalysis(analysis.hierarchy, branches, options["shells"])
     heights = engine.vertex_heights(analysis.surface, analysis.field)
     source = state.BorderSource(analysis.profile(arrays.edges), heights, analysis.closing_heights)
     is_function = isinstance(options["field"], int)

@@ -56,7 +56,7 @@ def _version_of_scipy() -> str:
 
 def _facts_of_scene(context: bpy.types.Context) -> list[str]:
     settings = context.scene.eigenparts
-    chosen = [f"{name}={getattr(settings, name)}" for name in ("field", "eigenfunction", "order", "boundary")]
+    chosen = [f"{name}={getattr(settings, name)}" for name in ("field", "eigenfunction", "order", "boundary", "shells")]
     return [f"Settings: {', '.join(chosen)}, use_modifiers={settings.use_modifiers}"]
 
 

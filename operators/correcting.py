@@ -21,7 +21,8 @@ def load(mesh: bpy.types.Mesh) -> state.StoredAnalysis:
         return with_items(mesh, analysis, items)
     pieces = corrections.read_pieces(mesh, mesh[state.STATE], analysis.hierarchy, items)
     if pieces is not None:
-        return state.StoredAnalysis(analysis.hierarchy, *pieces)
+        branches, corrected = pieces
+        return replace(analysis, branches=branches, corrections=corrected)
     redrawn = with_items(mesh, analysis, items)
     corrections.write_pieces(mesh, mesh[state.STATE], redrawn.branches, redrawn.corrections)
     return redrawn
@@ -47,7 +48,7 @@ def with_items(
     branches, corrected = engine.redraw(
         divided(mesh, analysis), state.closing_heights(mesh), items, painted, relief, graph
     )
-    return state.StoredAnalysis(analysis.hierarchy, branches, corrected)
+    return replace(analysis, branches=branches, corrections=corrected)
 
 
 def store(mesh: bpy.types.Mesh, analysis: state.StoredAnalysis, painted: np.ndarray) -> None:
@@ -149,7 +150,7 @@ def free_part(hierarchy: "engine.Hierarchy", items: tuple["engine.Correction", .
 def _faces_of(mesh: bpy.types.Mesh) -> tuple["engine.FaceGraph", "engine.Relief"]:
     arrays = read_mesh(mesh)
     triangles = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-    surface = engine.bridged_surface(triangles)
+    surface = engine.analyzed_surface(triangles, state.shells_of(mesh))
     graph = engine.face_graph(triangles, surface, arrays.polygon_of_triangle)
     heights = state.vertex_heights(mesh)
     return graph, engine.relief_of(surface, heights, arrays.polygon_of_triangle, graph.stands_for)

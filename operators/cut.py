@@ -100,7 +100,8 @@ def _show(mesh: bpy.types.Mesh, arcs: list[np.ndarray], level: int, mode: str) -
 def _face_graph(mesh: bpy.types.Mesh) -> "engine.FaceGraph":
     arrays = read_mesh(mesh)
     triangles = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-    return engine.face_graph(triangles, engine.bridged_surface(triangles), arrays.polygon_of_triangle)
+    surface = engine.analyzed_surface(triangles, state.shells_of(mesh))
+    return engine.face_graph(triangles, surface, arrays.polygon_of_triangle)
 
 
 def _refuse_shared(obj: bpy.types.Object) -> None:

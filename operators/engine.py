@@ -30,7 +30,7 @@ _HOME = {
     "FaceGraph": "segmentation.faces",
     "shortened_borders": "segmentation.edge_borders",
     "face_graph": "segmentation.faces",
-    "bridged_surface": "surface",
+    "analyzed_surface": "surface",
     "cross_edges": "segmentation.borders",
     "softened_labels": "geodesics",
     "Correction": "segmentation.corrections",

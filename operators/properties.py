@@ -61,6 +61,15 @@ class AnalysisOptions:
             ("DIRICHLET", "Fixed", "The function is zero at open edges; the mesh must have some"),
         ],
     )
+    shells: EnumProperty(
+        name="Loose Parts",
+        description="What is done with a mesh of several loose parts",
+        items=[
+            ("BRIDGED", "Bridged", "Loose parts that prolong the largest are analyzed with it, as if they were joined"),
+            ("LARGEST", "Largest", "Only the largest is analyzed; the others take the part of what they lie on"),
+            ("SEPARATE", "Each by Itself", "Each that is no detail is divided on its own, as if it were alone"),
+        ],
+    )
     use_modifiers: BoolProperty(
         name="With Modifiers",
         description="Analyze the posed shape as modifiers leave it; they must not change the faces",

@@ -32,7 +32,7 @@ def _is_sound_tree(tree: "ArcTree", n_features: int) -> bool:
         and 0 <= tree.n_roots <= 2 * n_arcs
         and bool(is_later.all())
         and lie_within(tree.parent, -1, n_arcs)
-        and lie_within(tree.part, 1, 2 * n_features + n_arcs + 1)
+        and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
     )
 
 

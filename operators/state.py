@@ -49,6 +49,8 @@ REGISTRATION = "registration"  # only while the mesh shows the parts of another
 OF_PARTS = ("part_numbers", "part_names", "part_colours", REGISTRATION)
 # How levels are read, the default first.
 MODES = ("nested", "features")
+# What can be done with loose parts; the first where nothing is said of it.
+SHELLS = ("bridged", "largest", "separate")
 # More than any mesh has, so that a damaged number makes no table that fills the memory.
 MOST_LABELS = 1 << 22
 LONGEST_DESCRIPTION = 200
@@ -71,12 +73,15 @@ class StoredAnalysis:
         Without the pairs that are noise.
     branches : tuple of Branches
         One for each tree.
+    shells : str
+        What was done with loose parts, one of ``SHELLS``.
     corrections : Corrections, optional
         What was changed by hand; it refers to these branches.
     """
 
     hierarchy: "engine.Hierarchy"
     branches: tuple["engine.Branches", ...]
+    shells: str
     corrections: "engine.Corrections | None" = None
 
 
@@ -142,6 +147,7 @@ def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, 
         "schema": SCHEMA,
         "fingerprint": fingerprint(mesh),
         "description": description,
+        "shells": analysis.shells,
         **kept,
         corrections.CORRECTIONS: corrections.packed_items(items),
         "hierarchy": packed(hierarchy, _features(hierarchy)),
@@ -193,13 +199,13 @@ def closing_heights(mesh: bpy.types.Mesh) -> tuple[np.ndarray, ...]:
         heights = tuple(
             unpacked_array(state[f"closing_heights_{i}"], "float64") for i in range(2 if "tree_1" in state else 1)
         )
-        parents = [unpacked_array(state[f"tree_{i}"]["parent"], "int64") for i in range(len(heights))]
+        saddles = [unpacked_array(state[f"tree_{i}"]["saddle"], "int64") for i in range(len(heights))]
     except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
-    # Only a root closes nowhere.
+    # Only a root and whole shells close nowhere.
     if not all(
-        one.shape == parent.shape and np.isfinite(one[parent >= 0]).all()
-        for one, parent in zip(heights, parents, strict=True)
+        one.shape == saddle.shape and np.isfinite(one[saddle >= 0]).all()
+        for one, saddle in zip(heights, saddles, strict=True)
     ):
         raise Refusal(DAMAGED)
     return heights
@@ -265,6 +271,13 @@ def mode_of(mesh: bpy.types.Mesh) -> str:
     state = mesh.get(STATE)
     mode = state.get("mode") if hasattr(state, "to_dict") else None
     return mode if mode in MODES else MODES[0]
+
+
+def shells_of(mesh: bpy.types.Mesh) -> str:
+    """Return what was done with the loose parts of an analyzed mesh."""
+    state = mesh.get(STATE)
+    shells = state.get("shells") if hasattr(state, "to_dict") else None
+    return shells if shells in SHELLS else SHELLS[0]
 
 
 def summarize(mesh: bpy.types.Mesh) -> Summary:
@@ -372,4 +385,4 @@ def _unpacked_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
         )
         for i in range(n_trees)
     )
-    return StoredAnalysis(hierarchy, branches)
+    return StoredAnalysis(hierarchy, branches, shells_of(mesh))

@@ -52,6 +52,7 @@ class EIGENPARTS_PT_options(EigenpartsPanel, bpy.types.Panel):
         settings = context.scene.eigenparts
         layout.prop(settings, "order")
         layout.prop(settings, "boundary")
+        layout.prop(settings, "shells")
         layout.prop(settings, "use_modifiers")
 
 

@@ -5,4 +5,5 @@ settings.field = "EIGENFUNCTION"
 settings.eigenfunction = 1
 settings.order = "AUTO"
 settings.boundary = "NEUMANN"
+settings.shells = "BRIDGED"
 settings.use_modifiers = False

@@ -5,4 +5,5 @@ settings.field = "DIFFUSION"
 settings.eigenfunction = 1
 settings.order = "1"
 settings.boundary = "NEUMANN"
+settings.shells = "BRIDGED"
 settings.use_modifiers = False
