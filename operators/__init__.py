@@ -7,6 +7,7 @@ register, unregister = bpy.utils.register_submodule_factory(
     [
         "properties",
         "preferences",
+        "recolouring",
         "analyze",
         "add_analysis_preset",
         "segment",

@@ -19,6 +19,7 @@ OUTPUTS: dict[str, tuple[str, str, ModuleType]] = {
     "FIELD": ("Field", 'Attribute "eigenparts_field": the numbers whose hills are the parts', field_values),
 }
 DEFAULT = ("VERTEX_ATTRIBUTE", "CORNER_COLORS")
+COLOURED = ("CORNER_COLORS", "MATERIALS")
 # In the state: the chosen ones, one a line, and the width over which vertex groups are softened.
 CHOSEN, SOFTNESS = "outputs", "softness"
 
@@ -50,6 +51,12 @@ def choose(mesh: bpy.types.Mesh, names: set[str], width: float) -> None:
 def write(mesh: bpy.types.Mesh, division: Division) -> None:
     """Write the chosen outputs."""
     for name in chosen(mesh):
+        OUTPUTS[name][2].write(mesh, division)
+
+
+def write_colours(mesh: bpy.types.Mesh, division: Division) -> None:
+    """Write those of the chosen outputs that show the colours of parts."""
+    for name in set(chosen(mesh)) & set(COLOURED):
         OUTPUTS[name][2].write(mesh, division)
 
 

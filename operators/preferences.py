@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import FloatVectorProperty, IntProperty
 
-from . import palette, threads
+from . import palette, recolouring, threads
 
 PACKAGE = __package__.rpartition(".")[0]
 COLOURS = tuple(f"color_{number}" for number in range(1, len(palette.PARTS) + 1))
@@ -12,12 +12,17 @@ COLUMNS = 7
 
 def _colour(name: str, description: str, default: tuple[float, ...]) -> object:
     return FloatVectorProperty(
-        name=name, description=description, subtype="COLOR", size=3, min=0, max=1, default=default, update=_take_colours
+        name=name, description=description, subtype="COLOR", size=3, min=0, max=1, default=default, update=_show_colours
     )
 
 
-def _take_colours(preferences: "EigenpartsPreferences", context: bpy.types.Context | None) -> None:
+def _take_colours(preferences: "EigenpartsPreferences") -> None:
     palette.use_colours([tuple(getattr(preferences, name)) for name in ("body", *COLOURS)])
+
+
+def _show_colours(preferences: "EigenpartsPreferences", context: bpy.types.Context) -> None:
+    _take_colours(preferences)
+    recolouring.show_changed_colours()
 
 
 class EigenpartsPreferences(bpy.types.AddonPreferences):
@@ -63,7 +68,7 @@ class EIGENPARTS_OT_reset_colors(bpy.types.Operator):
         if preferences is not None:
             for name in ("body", *COLOURS):
                 preferences.property_unset(name)
-            _take_colours(preferences, context)
+            _show_colours(preferences, context)
         return {"FINISHED"}
 
 
@@ -90,7 +95,7 @@ def register() -> None:
     _register_classes()
     preferences = current()
     if preferences is not None:
-        _take_colours(preferences, None)
+        _take_colours(preferences)
 
 
 def unregister() -> None:

@@ -108,6 +108,12 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
     mesh.update()
 
 
+def recolour(mesh: bpy.types.Mesh) -> None:
+    """Give the outputs of a mesh that show colours those that its parts have by now."""
+    outputs.write_colours(mesh, _division(mesh, read_labels(mesh)))
+    mesh.update()
+
+
 def refuse_foreign_results(mesh: bpy.types.Mesh) -> None:
     """Raise a Refusal if something of the user's stands where a result belongs."""
     refuse_foreign(mesh, (PART, *state.ATTRIBUTES, *outputs.own_attributes(outputs.chosen(mesh))))

@@ -20,16 +20,70 @@ def palette(extension):
     palette.use_colours(palette.standard_colours())
 
 
-def test_preferred_colours_are_used_from_the_next_division_on(palette, analyzed):
+@pytest.fixture
+def preferences(palette):
+    """The preferences as they are where Eigenparts is installed."""
+    addon = bpy.context.preferences.addons.new()
+    addon.module = "eigenparts"
+    yield addon.preferences
+    bpy.context.preferences.addons.remove(addon)
+
+
+def corners_with_colours(obj):
+    """Return the part and the colour of each corner."""
+    labels = values_of(obj.data, "part")
+    corners = np.repeat(labels, [polygon.loop_total for polygon in obj.data.polygons])
+    return corners, values_of(obj.data, "part_color", 4, np.float32, "color")[:, :3]
+
+
+def test_preferred_colours_are_those_of_a_division(palette, analyzed):
     palette.use_colours([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
     bpy.ops.eigenparts.segment()
-    labels = values_of(analyzed.data, "part")
-    corners = np.repeat(labels, [polygon.loop_total for polygon in analyzed.data.polygons])
-    colours = values_of(analyzed.data, "part_color", 4, np.float32, "color")[:, :3]
+    corners, colours = corners_with_colours(analyzed)
     np.testing.assert_array_equal(colours[corners == 0], 0)
     np.testing.assert_array_equal(np.unique(colours[corners == 1], axis=0), [[1, 0, 0]])
     # After the last, the colours repeat.
     np.testing.assert_array_equal(colours[corners == 3][0], colours[corners == 1][0])
+
+
+def test_a_changed_colour_shows_at_once_in_view_list_and_materials(preferences, analyzed):
+    bpy.ops.eigenparts.write_outputs(outputs={"CORNER_COLORS", "MATERIALS"})
+    preferences.color_2 = (0.25, 0.5, 0.75)
+    corners, colours = corners_with_colours(analyzed)
+    np.testing.assert_array_equal(np.unique(colours[corners == 2], axis=0), [[0.25, 0.5, 0.75]])
+    row = next(row for row in analyzed.data.eigenparts.rows if row.part == 2)
+    assert tuple(row.color) == (0.25, 0.5, 0.75)
+    assert tuple(analyzed.data.materials[row.title].diffuse_color) == (0.25, 0.5, 0.75, 1)
+    # What has a colour of its own keeps it.
+    row.color = (0, 1, 0)
+    preferences.color_2 = (1, 1, 1)
+    assert set(map(tuple, corners_with_colours(analyzed)[1][corners == 2])) == {(0, 1, 0)}
+
+
+def test_a_changed_colour_stays_through_undo_and_is_taken_back_by_reset(preferences, analyzed):
+    standard = corners_with_colours(analyzed)[1]
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window, screen=window.screen):
+        bpy.ops.ed.undo_push(message="analyzed")
+        preferences.body = (0.5, 0.25, 0)
+        analyzed.data.eigenparts.level = 1
+        bpy.ops.ed.undo_push(message="level 1")
+        bpy.ops.ed.undo()
+    corners, colours = corners_with_colours(bpy.data.objects["star"])
+    assert set(map(tuple, colours[corners == 0])) == {(0.5, 0.25, 0)}
+    bpy.ops.eigenparts.reset_colors()
+    np.testing.assert_array_equal(corners_with_colours(bpy.data.objects["star"])[1], standard)
+
+
+def test_only_meshes_of_ours_that_can_be_written_to_are_recoloured(preferences, analyzed):
+    other = analyzed.data.copy()
+    del other["eigenparts_state"]
+    colours = values_of(other, "part_color", 4, np.float32, "color")
+    bpy.ops.object.mode_set(mode="EDIT")
+    preferences.color_2 = (0.25, 0.5, 0.75)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    np.testing.assert_array_equal(values_of(other, "part_color", 4, np.float32, "color"), colours)
+    np.testing.assert_array_equal(corners_with_colours(analyzed)[1], colours[:, :3])
 
 
 def test_threads_reach_the_library_of_scipy(extension):
