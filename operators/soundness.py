@@ -33,6 +33,18 @@ def _is_sound_tree(tree: "ArcTree", n_features: int) -> bool:
         and bool(is_later.all())
         and lie_within(tree.parent, -1, n_arcs)
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
+        and _are_sound_shells(tree)
+    )
+
+
+def _are_sound_shells(tree: "ArcTree") -> bool:
+    """Whether whole shells stand under the root, with numbers of their own that follow those of the roots."""
+    is_shell, root = tree.is_shell, len(tree.parent) - 1
+    own = tree.n_roots + 1 + np.arange(-int(is_shell.sum()), 0)
+    return (
+        np.array_equal(tree.part[is_shell], own)
+        and bool((tree.parent[is_shell] == root).all())
+        and not np.isin(tree.part[~is_shell], own).any()
     )
 
 

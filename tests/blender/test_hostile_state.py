@@ -10,9 +10,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from compute import TriangleMesh
 from tests.blender.conftest import add_object, everything_on
 from tests.blender.damage import ATTRIBUTE_DAMAGES, STATE, damage, damage_attribute, damages_of, own_attributes
 from tests.blender.drawn import draw_panels
+from tests.shapes import joined
 
 ROOT = Path(__file__).resolve().parents[2]
 OUTPUTS = {"VERTEX_ATTRIBUTE", "CORNER_COLORS", "FACE_SETS", "VERTEX_GROUPS", "MATERIALS", "FIELD"}
@@ -64,6 +66,19 @@ def registered(divided, small_star):
     bpy.ops.eigenparts.register_selected(order="1")
     bpy.context.view_layer.objects.active = divided
     return divided
+
+
+@pytest.fixture
+def apart(small_star):
+    """Two stars in one mesh, each analyzed by itself, the first with a split and a level of its own."""
+    both = joined(small_star, TriangleMesh(0.7 * small_star.vertices + [6, 0, 0], small_star.triangles))
+    obj = add_object(both.vertices, both.triangles)
+    bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=4, order="1", shells="SEPARATE")
+    bpy.ops.eigenparts.segment(n_parts=6)
+    bpy.ops.eigenparts.split_part(part=1, position=0.3)
+    bpy.ops.eigenparts.set_branch_level(part=1, level=1)
+    assert len(obj.data.eigenparts.correction_rows) == 2
+    return obj
 
 
 @pytest.fixture
@@ -138,7 +153,7 @@ def all_damages(mesh):
     return damages_of(mesh) + [(name, kind) for name in own_attributes(mesh) for kind in ATTRIBUTE_DAMAGES]
 
 
-@pytest.mark.parametrize("situation", ["divided", "corrected", "registered"])
+@pytest.mark.parametrize("situation", ["divided", "corrected", "registered", "apart"])
 def test_whatever_is_damaged_everything_quick_works_or_refuses(request, situation, tracebacks):
     obj = request.getfixturevalue(situation)
     template = obj.data.copy()

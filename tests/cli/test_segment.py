@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze
-from tests.cli.files import add_object
-from tests.shapes import icosphere, star
+from tests.cli.files import add_object, write_off
+from tests.shapes import icosphere, joined, star
 from tools.extension import load_extension
 
 EXPORTERS = {
@@ -50,6 +50,17 @@ def test_materials_hold_the_parts_where_the_format_knows_no_attributes(run, tmp_
     counts = np.bincount([polygon.material_index for polygon in mesh.polygons])
     by_name = {material.name: count for material, count in zip(mesh.materials, counts.tolist(), strict=True)}
     assert by_name == {part["name"]: part["faces"] for part in report["files"][0]["objects"][0]["parts"]}
+
+
+def test_each_loose_part_is_divided_by_itself_if_wanted(run, tmp_path):
+    small = star(3, 3)
+    write_off(joined(star(5, 3), TriangleMesh(0.7 * small.vertices + [6, 0, 0], small.triangles)), tmp_path / "two.off")
+    n_parts = {}
+    for shells in ("bridged", "largest", "separate"):
+        _, report, _ = run("segment", tmp_path / "two.off", "--shells", shells, "--json")
+        n_parts[shells] = len(report["files"][0]["objects"][0]["parts"])
+        assert report["files"][0]["settings"]["shells"] == shells
+    assert n_parts == {"bridged": 6, "largest": 6, "separate": 6 + 4}
 
 
 def test_a_blend_file_keeps_what_the_panel_needs(run, tmp_path):

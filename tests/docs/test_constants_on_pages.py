@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from compute import fields, shells
+from compute import fields, shell_fields, shells
 from compute.fem import assembly
 from compute.registration import (
     alignment,
@@ -58,6 +58,7 @@ METHOD = {
 LOOSE_PARTS = {
     "detail": f"less than {percent(shells.LEAST_SHARE)} of the area",
     "near": f"than {percent(shells.TOUCHING)} of the root",
+    "crumb": f"fewer than {shell_fields.LEAST_TRIANGLES} triangles",
     "lying": f"{percent(shells.LYING_SHARE)} of its vertices nearer than {percent(shells.LYING)} of the root",
 }
 TROUBLESHOOTING = {"islands": f"more than {transfer.MOST_ISLANDS} islands"}
