@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import engine, exchange, function_hints, results, state
+from . import engine, exchange, function_hints, recent_analyses, results, state
 from .analysis_request import AnalysisRequest
 from .refusals import Refusal
 from .rollback import all_or_nothing
@@ -48,7 +48,7 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
         mesh = context.object.data
         results.refuse_foreign_results(mesh)
         ticket = Ticket(mesh.session_uid, exchange.fingerprint(mesh))
-        return partial(analyze_arrays, *self.read(context)), ticket
+        return partial(analyze_arrays, *self.read(context), analyze=recent_analyses.analyze_and_keep), ticket
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
@@ -65,12 +65,14 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
 
 
 def analyze_arrays(
-    arrays: exchange.MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]
+    arrays: exchange.MeshArrays,
+    options: dict[str, Any],
+    progress: Callable[[float, str], None],
+    analyze: Callable[..., "engine.Analysis"] = recent_analyses.analyze,
 ) -> Outcome:
     """Run the engine; knows nothing of Blender, so any thread may do it."""
     start = time.perf_counter()
-    mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-    analysis = engine.analyze(mesh, **options, progress=progress)
+    analysis = analyze(arrays, options, progress)
     return outcome_of(analysis, arrays, options, time.perf_counter() - start)
 
 

@@ -4,6 +4,7 @@ import bpy
 
 from . import exchange, outputs, state
 from .refusals import can_use_active_mesh
+from .rollback import all_or_nothing
 from .viewport import restore_colour_types
 
 
@@ -12,7 +13,7 @@ class EIGENPARTS_OT_clear(bpy.types.Operator):
 
     bl_idname = "eigenparts.clear"
     bl_label = "Clear"
-    bl_options = {"UNDO"}
+    bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -20,10 +21,11 @@ class EIGENPARTS_OT_clear(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.object.data
-        outputs.remove(mesh)
-        exchange.remove_own_attributes(mesh, exchange.own_names(mesh))
-        mesh.property_unset("eigenparts")
-        state.forget(mesh)
+        with all_or_nothing(mesh):
+            outputs.remove(mesh)
+            exchange.remove_own_attributes(mesh, exchange.own_names(mesh))
+            mesh.property_unset("eigenparts")
+            state.forget(mesh)
         if not any(state.is_analyzed(other) for other in bpy.data.meshes):
             restore_colour_types(context)
         return {"FINISHED"}

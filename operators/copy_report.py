@@ -20,6 +20,7 @@ class EIGENPARTS_OT_copy_report(bpy.types.Operator):
 
     bl_idname = "eigenparts.copy_report"
     bl_label = "Copy Bug Report"
+    bl_options = set()
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         context.window_manager.clipboard = report(context)

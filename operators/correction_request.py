@@ -6,6 +6,7 @@ import bpy
 
 from . import correcting, engine, state
 from .refusals import Refusal, can_use_active_mesh, refusals_told
+from .select_part import use_active_part
 
 BODY_IS_WHAT_IS_LEFT = "The body is what the parts leave; change the parts next to it instead."
 
@@ -22,9 +23,15 @@ class CorrectsParts:
     def execute(self, context: bpy.types.Context) -> set[str]:
         with refusals_told(self):
             correcting.refuse_uncorrectable(context.object.data)
+            self.fill_in(context.object.data)
             self.correct(context.object.data)
             return {"FINISHED"}
         return {"CANCELLED"}
+
+    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+        """Set what the call leaves open."""
+        if "part" in self.properties.bl_rna.properties:
+            use_active_part(self, mesh)
 
     def correct(self, mesh: bpy.types.Mesh) -> None:
         """Change the corrections of a mesh."""

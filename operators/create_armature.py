@@ -34,7 +34,7 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
         "other selected meshes with the same faces show where its limbs bend"
     )
     bl_label = "Create Armature"
-    bl_options = {"UNDO"}
+    bl_options = {"REGISTER", "UNDO"}
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
         if self.weights != "NONE" and any(modifier.type == "ARMATURE" for modifier in context.object.modifiers):

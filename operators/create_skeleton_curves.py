@@ -16,7 +16,7 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
 
     bl_idname = "eigenparts.create_skeleton_curves"
     bl_label = "Create Skeleton Curves"
-    bl_options = {"UNDO"}
+    bl_options = {"REGISTER", "UNDO"}
 
     def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: Laid) -> None:
         skeleton = laid.skeleton

@@ -6,12 +6,12 @@ from typing import Any
 
 import bpy
 
-from . import engine, exchange
+from . import exchange, recent_analyses
 from .analysis_request import AnalysisRequest
 
 
 class FreshAnalysis(AnalysisRequest):
-    """Analyzes the active mesh anew and hands the analysis to ``finish`` with the name of the object."""
+    """Hands an analysis of the active mesh to ``finish`` with the name of the object."""
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Any], str]:
         return partial(self.examine, *self.read(context)), context.object.name
@@ -19,7 +19,7 @@ class FreshAnalysis(AnalysisRequest):
     @staticmethod
     def examine(arrays: exchange.MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> Any:
         """Return what ``finish`` needs; knows nothing of Blender, so any thread may do it."""
-        analysis = engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options, progress=progress)
+        analysis = recent_analyses.recall(arrays, options, progress)
         # The longer part of the topology is made here, in the thread.
         _ = analysis.diagram
         return analysis

@@ -16,7 +16,9 @@ class EIGENPARTS_OT_move_border(CorrectsParts, bpy.types.Operator):
     bl_idname = "eigenparts.move_border"
     bl_label = "Move Border"
 
-    part: IntProperty(name="Part", description="Number of the part")
+    part: IntProperty(
+        name="Part", description="Number of the part whose border is moved; the active one if not given", min=0
+    )
     offset: FloatProperty(
         name="Offset",
         description="How far the border is moved from where it was found, as a fraction of the field's range; the part"
@@ -26,6 +28,12 @@ class EIGENPARTS_OT_move_border(CorrectsParts, bpy.types.Operator):
         precision=3,
         step=0.5,
     )
+
+    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+        """Begin where the border lies now."""
+        super().fill_in(mesh)
+        if not self.properties.is_property_set("offset"):
+            self.offset = offset_of(correcting.items_of(mesh), self.part)
 
     def correct(self, mesh: bpy.types.Mesh) -> None:
         move_border(mesh, self.part, self.offset)

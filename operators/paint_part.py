@@ -16,7 +16,7 @@ class EIGENPARTS_OT_paint_part(CorrectsParts, bpy.types.Operator):
     bl_idname = "eigenparts.paint_part"
     bl_label = "Assign Selected Faces"
 
-    part: IntProperty(name="Part", description="Number of the part; 0 is the body", min=0)
+    part: IntProperty(name="Part", description="Number of the part, 0 for the body; the active one if not given", min=0)
     new: BoolProperty(name="New Part", description="Make a new part of the faces", options={"SKIP_SAVE"})
 
     @classmethod
@@ -29,6 +29,10 @@ class EIGENPARTS_OT_paint_part(CorrectsParts, bpy.types.Operator):
         if context.mode == "EDIT_MESH":
             bpy.ops.object.mode_set(mode="OBJECT")
         return super().execute(context)
+
+    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+        if not self.new:
+            super().fill_in(mesh)
 
     def correct(self, mesh: bpy.types.Mesh) -> None:
         faces = selected_faces(mesh)

@@ -18,7 +18,7 @@ def standard_colours() -> list[tuple[float, ...]]:
 
 
 def use_colours(colours: list[tuple[float, ...]]) -> None:
-    """From now on, take these linear RGB for the body and the parts; meshes keep theirs until they are coloured anew."""
+    """From now on, take these linear RGB for the body and the parts; meshes keep theirs until coloured anew."""
     _in_use[:] = colours
 
 

@@ -19,7 +19,7 @@ def show_changed_colours() -> None:
 
 
 def recolour_meshes() -> None:
-    """Give the parts of all meshes in the file the colours they have by now; what cannot be written to keeps its own."""
+    """Give the parts of all meshes the colours they have by now; what cannot be written to keeps its own."""
     for mesh in bpy.data.meshes:
         if state.is_analyzed(mesh) and not mesh.is_editmode and not is_linked(mesh):
             with suppress(Refusal):

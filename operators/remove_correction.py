@@ -15,7 +15,7 @@ class EIGENPARTS_OT_remove_correction(CorrectsParts, bpy.types.Operator):
     bl_idname = "eigenparts.remove_correction"
     bl_label = "Remove Correction"
 
-    index: IntProperty(name="Correction", description="Its place in the list, from 0")
+    index: IntProperty(name="Correction", description="Its place in the list, from 0", min=0)
 
     def correct(self, mesh: bpy.types.Mesh) -> None:
         items = correcting.items_of(mesh)

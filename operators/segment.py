@@ -3,10 +3,13 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from . import results, state
+from . import engine, results, state
 from .properties import MODE_ITEMS
 from .refusals import can_use_active_mesh, refusals_told
 from .viewport import show_vertex_colours
+
+# What a division can go by, and the property that says how far.
+MEASURES = {"LEVEL": "level", "N_PARTS": "n_parts", "THRESHOLD": "threshold"}
 
 
 class EIGENPARTS_OT_segment(bpy.types.Operator):
@@ -14,16 +17,31 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
 
     bl_idname = "eigenparts.segment"
     bl_label = "Segment"
-    bl_options = {"UNDO"}
+    bl_options = {"REGISTER", "UNDO"}
 
-    level: IntProperty(name="Level", description="How many features to keep", options={"SKIP_SAVE"})
+    by: EnumProperty(
+        name="By",
+        description="What says how finely the mesh is divided; if not given, what is given of the following",
+        items=[
+            ("DEFAULT", "Default Level", "The level that the analysis finds best"),
+            ("LEVEL", "Level", "So many of the most prominent features"),
+            ("N_PARTS", "Number of Parts", "So many parts, the body included"),
+            ("THRESHOLD", "Threshold", "All features that are high enough"),
+        ],
+        options={"SKIP_SAVE"},
+    )
+    level: IntProperty(name="Level", description="How many features to keep", soft_min=0, options={"SKIP_SAVE"})
     threshold: FloatProperty(
         name="Threshold",
         description="Least height of a feature, as a fraction of the field's range",
+        default=0.05,
+        soft_min=0,
+        soft_max=1,
         options={"SKIP_SAVE"},
     )
-    n_parts: IntProperty(name="Parts", description="How many parts, the body included", options={"SKIP_SAVE"})
-
+    n_parts: IntProperty(
+        name="Parts", description="How many parts, the body included", soft_min=1, options={"SKIP_SAVE"}
+    )
     mode: EnumProperty(
         name="Mode",
         description="What becomes a part; if not given, as it is on the mesh",
@@ -35,18 +53,38 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
 
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        self.layout.prop(self, "mode")
+        self.layout.prop(self, "by")
+        if self.by in MEASURES:
+            self.layout.prop(self, MEASURES[self.by])
+
     def execute(self, context: bpy.types.Context) -> set[str]:
-        given = [name for name in ("level", "threshold", "n_parts") if self.properties.is_property_set(name)]
+        mesh, given = context.object.data, self._given()
         with refusals_told(self):
             mode = self.mode.lower() if self.properties.is_property_set("mode") else None
-            labels = results.segment_mesh(
-                context.object.data, mode=mode, **{name: getattr(self, name) for name in given}
-            )
+            labels = results.segment_mesh(mesh, mode=mode, **{name: getattr(self, name) for name in given})
             show_vertex_colours(context)
             for warning in labels.warnings:
                 self.report({"WARNING"}, warning)
+            self._fill_in(mesh, labels, given)
             return {"FINISHED"}
         return {"CANCELLED"}
+
+    def _given(self) -> list[str]:
+        """Return what the division goes by: what was chosen, or all that is given."""
+        if self.properties.is_property_set("by"):
+            return [MEASURES[self.by]] if self.by in MEASURES else []
+        return [name for name in MEASURES.values() if self.properties.is_property_set(name)]
+
+    def _fill_in(self, mesh: bpy.types.Mesh, labels: "engine.BranchLabels", given: list[str]) -> None:
+        """Let the panel of the last operation begin with what the mesh shows."""
+        self.by = next((by for by, name in MEASURES.items() if name in given), "DEFAULT")
+        self.mode = state.mode_of(mesh).upper()
+        for name, value in (("level", labels.level), ("n_parts", len(labels.parts))):
+            if name not in given:
+                setattr(self, name, value)
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_segment,))

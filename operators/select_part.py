@@ -17,7 +17,7 @@ class EIGENPARTS_OT_select_part(bpy.types.Operator):
     bl_label = "Select Part"
     bl_options = {"REGISTER", "UNDO"}
 
-    part: IntProperty(name="Part", description="Number of the part; 0 is the body", min=0)
+    part: IntProperty(name="Part", description="Number of the part, 0 for the body; the active one if not given", min=0)
     extend: BoolProperty(name="Extend", description="Keep what is selected already", options={"SKIP_SAVE"})
 
     @classmethod
@@ -33,12 +33,21 @@ class EIGENPARTS_OT_select_part(bpy.types.Operator):
         with refusals_told(self):
             if not bpy.ops.object.mode_set.poll():
                 raise Refusal("The object is hidden; show it first.")
+            use_active_part(self, mesh)
             is_selected = read_own_integers(mesh, PART) == self.part
             _select_faces(mesh, is_selected | selected_faces(mesh) if self.extend else is_selected)
             context.tool_settings.mesh_select_mode = (False, False, True)
             bpy.ops.object.mode_set(mode="EDIT")
             return {"FINISHED"}
         return {"CANCELLED"}
+
+
+def use_active_part(operator: bpy.types.Operator, mesh: bpy.types.Mesh) -> None:
+    """Let an operator be about the part that is active in the list if it was not told about which."""
+    if not operator.properties.is_property_set("part"):
+        if mesh.eigenparts.active_row < 0:
+            raise Refusal("Click a part in the list first.")
+        operator.part = mesh.eigenparts.active_part
 
 
 def select_faces_of(mesh: bpy.types.Mesh, part: int) -> None:

@@ -14,9 +14,17 @@ class EIGENPARTS_OT_set_branch_level(CorrectsParts, bpy.types.Operator):
     bl_idname = "eigenparts.set_branch_level"
     bl_label = "Set Level of Part"
 
-    part: IntProperty(name="Part", description="Number of the part")
+    part: IntProperty(
+        name="Part", description="Number of the part that is divided by itself; the active one if not given", min=0
+    )
     level: IntProperty(name="Level", description="Level that counts inside the part")
     reset: BoolProperty(name="Reset", description="Let the level of the mesh count again", options={"SKIP_SAVE"})
+
+    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+        """Begin with the level that the mesh shows."""
+        super().fill_in(mesh)
+        if not self.properties.is_property_set("level"):
+            self.level = state.summarize(mesh).level
 
     def correct(self, mesh: bpy.types.Mesh) -> None:
         set_branch_level(mesh, self.part, None if self.reset else self.level)

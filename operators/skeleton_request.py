@@ -8,11 +8,12 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import bone_layout, engine, exchange, part_sides, part_table, state
+from . import bone_layout, engine, exchange, part_sides, part_table, recent_analyses, state
 from .analysis_request import AnalysisRequest
 from .analyze import Ticket, find_mesh
 from .refusals import Refusal
 from .results import read_labels
+from .rollback import all_or_nothing, bound_or_not, nothing_left_behind
 from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 
@@ -65,7 +66,7 @@ class BoneWish:
 
 
 class SkeletonRequest(SkeletonOptions, AnalysisRequest):
-    """Analyzes the active mesh anew and lays a skeleton into the parts that it shows."""
+    """Lays a skeleton into the parts that the active mesh shows."""
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -73,10 +74,20 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """From the window: what the call leaves open is taken from the panel."""
-        for name in (*SkeletonOptions.__annotations__, *ArmatureOptions.__annotations__):
-            if name in self.properties.bl_rna.properties and not self.properties.is_property_set(name):
+        for name in self._options():
+            if not self.properties.is_property_set(name):
                 setattr(self, name, getattr(context.scene.eigenparts_skeleton, name))
         return super().invoke(context, event)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Show what can be changed afterwards: with other options of the analysis all would have to be done again."""
+        self.layout.use_property_split = True
+        for name in self._options():
+            self.layout.prop(self, name)
+
+    def _options(self) -> list[str]:
+        names = (*ArmatureOptions.__annotations__, *SkeletonOptions.__annotations__)
+        return [name for name in names if name in self.properties.bl_rna.properties]
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
         obj = context.object
@@ -100,9 +111,10 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
     def finish(self, context: bpy.types.Context, ticket: Ticket, laid: Laid) -> set[str]:
         mesh = find_mesh(ticket)
         obj = _object_of(context, mesh)
-        part_sides.remember(mesh, laid.pairing)
-        bone_layout.remember(mesh, laid.skeleton.layout)
-        self.build(context, obj, laid)
+        with all_or_nothing(mesh), nothing_left_behind(context), bound_or_not(obj):
+            part_sides.remember(mesh, laid.pairing)
+            bone_layout.remember(mesh, laid.skeleton.layout)
+            self.build(context, obj, laid)
         for warning in (*laid.skeleton.warnings, *_warnings_of_reference(mesh)):
             self.report({"WARNING"}, warning)
         return {"FINISHED"}
@@ -135,7 +147,7 @@ def lay_bones(
     def of_symmetry(fraction: float, text: str) -> None:
         progress(0.6 + 0.3 * fraction, text)
 
-    analysis = engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options, progress=of_analysis)
+    analysis = recent_analyses.recall(arrays, options, of_analysis)
     labels = wish.labels[arrays.polygon_of_triangle]
     partner = engine.mirror_parts(analysis, labels, progress=of_symmetry)
     progress(0.9, "Laying bones")

@@ -17,7 +17,7 @@ class EIGENPARTS_OT_split_part(CorrectsParts, bpy.types.Operator):
     bl_idname = "eigenparts.split_part"
     bl_label = "Split Part"
 
-    part: IntProperty(name="Part", description="Number of the part")
+    part: IntProperty(name="Part", description="Number of the part that is divided; the active one if not given", min=0)
     position: FloatProperty(
         name="Position",
         description="Where the new border lies: 0 at the old one, 1 at the tip",

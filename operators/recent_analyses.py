@@ -1,0 +1,37 @@
+"""The analyses made last, kept while Blender runs: bones, diagram and complex of the same mesh then need no new one."""
+
+from collections.abc import Callable
+from typing import Any
+
+from . import engine
+from .exchange import MeshArrays
+from .recent import Recent, key_of
+
+# All their vertices together; each takes 1 to 10 kB, by the order of the elements.
+RECENT_VERTICES = 200_000
+
+_recent = Recent(RECENT_VERTICES)
+
+
+def analyze(arrays: MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> "engine.Analysis":
+    """Return a new analysis."""
+    return engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options, progress=progress)
+
+
+def analyze_and_keep(
+    arrays: MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]
+) -> "engine.Analysis":
+    """Return a new analysis, and keep it."""
+    analysis = analyze(arrays, options, progress)
+    _recent.put(_key(arrays, options), analysis, len(arrays.vertices))
+    return analysis
+
+
+def recall(arrays: MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> "engine.Analysis":
+    """Return the analysis that was made before, a new one if it is not here any more."""
+    return _recent.get(_key(arrays, options)) or analyze_and_keep(arrays, options, progress)
+
+
+def _key(arrays: MeshArrays, options: dict[str, Any]) -> str:
+    chosen = (entry for name in sorted(options) for entry in (name, options[name]))
+    return key_of([arrays.vertices, arrays.triangles, *chosen])
