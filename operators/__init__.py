@@ -12,6 +12,7 @@ register, unregister = bpy.utils.register_submodule_factory(
         "add_analysis_preset",
         "segment",
         "select_part",
+        "pick_part",
         "set_branch_level",
         "merge_parts",
         "split_part",

@@ -17,6 +17,7 @@ from bpy.props import (
 )
 
 from . import correcting, engine, outputs, part_table, results, state
+from .faults import OUT_OF_MEMORY
 from .move_border import move_border, offset_of
 from .refusals import LINKED, Refusal, is_linked
 from .select_part import select_faces_of
@@ -278,9 +279,10 @@ class EigenpartsMeshSettings(bpy.types.PropertyGroup):
 
 
 class EigenpartsJobStatus(bpy.types.PropertyGroup):
-    """How far the running job is, for the panel, and what went wrong last."""
+    """How far the running job is, for the panel, whether parts are being picked, and what went wrong last."""
 
     is_running: BoolProperty(options={"SKIP_SAVE"})
+    is_picking: BoolProperty(options={"SKIP_SAVE"})
     fraction: FloatProperty(options={"SKIP_SAVE"}, subtype="FACTOR", min=0, max=1)
     text: StringProperty(options={"SKIP_SAVE"})
     shown: StringProperty(options={"SKIP_SAVE"})
@@ -313,6 +315,9 @@ def _told(mesh: bpy.types.Mesh, action: Callable[..., Any], *arguments: Any) -> 
         return action(mesh, *arguments)
     except (Refusal, engine.EngineError) as error:
         status.problem = str(error)
+        return None
+    except MemoryError:
+        status.problem = OUT_OF_MEMORY
         return None
 
 

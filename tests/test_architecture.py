@@ -21,7 +21,7 @@ MAY_IMPORT = {
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},
-    "operators": {"bl_operators", "bmesh", "bpy", "numpy"},
+    "operators": {"bl_operators", "bmesh", "bpy", "bpy_extras", "mathutils", "numpy"},
     "cli": {"bpy", "distributed", "numpy"},
     "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils"},
 }

@@ -7,6 +7,7 @@ ENTRIES = (
     ("eigenparts.analyze", "MOD_EXPLODE"),
     ("eigenparts.segment", "LOOP_BACK"),
     None,
+    ("eigenparts.pick_part", "EYEDROPPER"),
     ("eigenparts.select_part", "RESTRICT_SELECT_OFF"),
     ("eigenparts.merge_parts", "AUTOMERGE_ON"),
     ("eigenparts.split_part", "MOD_BEVEL"),

@@ -5,7 +5,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import faults, registered, state
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
-from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_sentence
+from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_main_button, draw_sentence
 
 # Rows of the list, always the same, so that nothing below it jumps when the level moves.
 N_ROWS = 8
@@ -22,13 +22,9 @@ class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
         column.use_property_split = True
         column.use_property_decorate = False
         column.enabled = not status.is_running
-        _draw_field(column, context.scene.eigenparts)
-        row = layout.row(align=True)
-        if status.is_running:
-            row.progress(factor=status.fraction, text=status.text)
-            row.operator("eigenparts.cancel", text="", icon="X")
-        else:
-            row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
+        _draw_field(column, context.scene.eigenparts, active_mesh(context))
+        row = draw_main_button(layout, context, "eigenparts.analyze", "MOD_EXPLODE")
+        if not status.is_running:
             row.operator("eigenparts.clear", text="", icon="TRASH")
         fault = faults.last()
         if fault is not None:
@@ -79,7 +75,10 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
             return
         rows = {"rows": N_ROWS, "maxrows": N_ROWS}
         settings = mesh.eigenparts
-        self.layout.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", **rows)
+        row = self.layout.row()
+        row.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", **rows)
+        is_picking = context.window_manager.eigenparts.is_picking
+        row.operator("eigenparts.pick_part", text="", icon="EYEDROPPER", depress=is_picking)
 
 
 class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
@@ -103,12 +102,14 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
         column.operator("eigenparts.separate", icon="MOD_EXPLODE")
 
 
-def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, mesh: bpy.types.Mesh | None) -> None:
     layout.prop(settings, "field")
     if settings.field == "EIGENFUNCTION":
         layout.prop(settings, "eigenfunction")
-    if settings.field == "ATTRIBUTE":
+    if settings.field == "ATTRIBUTE" and mesh is None:
         layout.prop(settings, "attribute")
+    elif settings.field == "ATTRIBUTE":
+        layout.prop_search(settings, "attribute", mesh, "attributes")
 
 
 def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
