@@ -8,7 +8,7 @@ from . import correcting, corrections, engine, paint_part, registered, results, 
 from .exchange import read_mesh
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
-from .rollback import all_or_nothing
+from .rollback import all_or_nothing, faces_or_nothing
 
 
 class EIGENPARTS_OT_cut(bpy.types.Operator):
@@ -35,7 +35,7 @@ class EIGENPARTS_OT_cut(bpy.types.Operator):
         with refusals_told(self):
             registered.refuse_registered(context.object.data)
             n_before = len(context.object.data.polygons)
-            with all_or_nothing(context.object.data):
+            with all_or_nothing(context.object.data), faces_or_nothing(context.object.data):
                 if self.method == "INSERT":
                     insert_borders(context.object)
                 else:

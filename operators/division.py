@@ -4,6 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .exchange import OwnAttribute
+
+# The face map.
+PART = OwnAttribute("part", "INT", "FACE")
+
 
 @dataclass(frozen=True, eq=False)
 class Division:

@@ -122,10 +122,11 @@ def _write_groups(obj: bpy.types.Object, some: list[Layer], share: np.ndarray) -
     for name, column, old in zip(names, np.clip(after, 0, 1).T, before.T, strict=True):
         if name not in obj.vertex_groups:
             obj.vertex_groups.new(name=name)
-        _fill_group(obj.vertex_groups[name], np.where(column < LEAST_WEIGHT, 0, column), old)
+        fill_group(obj.vertex_groups[name], np.where(column < LEAST_WEIGHT, 0, column), old)
 
 
-def _fill_group(group: bpy.types.VertexGroup, weights: np.ndarray, before: np.ndarray) -> None:
+def fill_group(group: bpy.types.VertexGroup, weights: np.ndarray, before: np.ndarray) -> None:
+    """Give vertices (V,) their weights in a group; where they have none they are taken out if they were in it."""
     group.remove(np.flatnonzero((weights == 0) & (before > 0)).tolist())
     group.add(np.flatnonzero(weights == 1).tolist(), 1.0, "REPLACE")
     # Blender takes one weight for any number of vertices, so those between 0 and 1 go one by one.
@@ -149,7 +150,7 @@ def _write_materials(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray) -> N
     if "material_index" not in mesh.attributes:
         mesh.attributes.new("material_index", "INT", "FACE")
     attribute = mesh.attributes["material_index"]
-    _store(attribute, _replaced(read_attribute(attribute), slot[layer.values], _of_faces(mesh, share)))
+    store_values(attribute, _replaced(read_attribute(attribute), slot[layer.values], _of_faces(mesh, share)))
 
 
 def _slot(mesh: bpy.types.Mesh, name: str) -> int:
@@ -180,9 +181,9 @@ def _write_attribute(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray) -> N
     before = read_attribute(attribute)
     share = _spread(mesh, layer.kind, share)
     if layer.can_blend:
-        _store(attribute, engine.mixed(before.astype(np.float64), layer.values, share))
+        store_values(attribute, engine.mixed(before.astype(np.float64), layer.values, share))
     else:
-        _store(attribute, _replaced(before, layer.values, share))
+        store_values(attribute, _replaced(before, layer.values, share))
 
 
 def _new_attribute(mesh: bpy.types.Mesh, layer: Layer) -> bpy.types.Attribute:
@@ -192,7 +193,8 @@ def _new_attribute(mesh: bpy.types.Mesh, layer: Layer) -> bpy.types.Attribute:
     return mesh.attributes.new(layer.name, layer.data_type, layer.kind)
 
 
-def _store(attribute: bpy.types.Attribute, values: np.ndarray) -> None:
+def store_values(attribute: bpy.types.Attribute, values: np.ndarray) -> None:
+    """Write the (n, components) values of an attribute."""
     storage = STORAGES[attribute.data_type]
     attribute.data.foreach_set(storage.property_name, np.ascontiguousarray(values, dtype=storage.dtype).ravel())
 

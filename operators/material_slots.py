@@ -10,6 +10,9 @@ from .exchange import OwnAttribute, own_names, read_own_integers, remove_own_att
 PREVIOUS_MATERIAL = OwnAttribute("eigenparts_previous_material", "INT", "FACE")
 ATTRIBUTES = (PREVIOUS_MATERIAL,)
 
+# What is in a slot: a material of the user's, none, or the part that one of ours belongs to.
+Slot = bpy.types.Material | int | None
+
 MATERIAL_INDEX = "material_index"
 # On our materials: the part they belong to.
 PART_OF_MATERIAL = "eigenparts_part"
@@ -41,9 +44,44 @@ def remove(mesh: bpy.types.Mesh) -> None:
         _assign(mesh, previous)
     else:
         _drop_slots(mesh, set())
-        if (attribute := mesh.attributes.get(MATERIAL_INDEX)) is not None:
-            mesh.attributes.remove(attribute)
+        forget_assignment(mesh)
     del mesh[IS_WRITTEN]
+
+
+def slots_of(mesh: bpy.types.Mesh) -> list[Slot]:
+    """Return the material of each slot that is the user's, and the part that it belongs to where it is ours."""
+    return [_part_of(material) if _is_own(material) else material for material in mesh.materials]
+
+
+def restore(mesh: bpy.types.Mesh, kept: list[Slot]) -> None:
+    """Give a mesh the slots that it had; materials of ours that are gone are made anew, the next writing dresses them.
+
+    Others of ours that nobody uses are removed.
+    """
+    own = {_part_of(material): material for material in mesh.materials if _is_own(material)}
+    while len(mesh.materials) > len(kept):
+        mesh.materials.pop(index=len(mesh.materials) - 1)
+    while len(mesh.materials) < len(kept):
+        mesh.materials.append(None)
+    for slot, known in enumerate(kept):
+        is_part = isinstance(known, int)
+        mesh.materials[slot] = (own.get(known) or _new_material(known)) if is_part else known
+    for material in [material for material in bpy.data.materials if _is_own(material) and material.users == 0]:
+        bpy.data.materials.remove(material)
+
+
+def forget_assignment(mesh: bpy.types.Mesh) -> None:
+    """Let all faces have the first slot."""
+    if (attribute := mesh.attributes.get(MATERIAL_INDEX)) is not None:
+        mesh.attributes.remove(attribute)
+
+
+def _is_own(material: bpy.types.Material | None) -> bool:
+    return material is not None and isinstance(_part_of(material), int)
+
+
+def _part_of(material: bpy.types.Material) -> int | None:
+    return material.get(PART_OF_MATERIAL)
 
 
 def _keep_assignment(mesh: bpy.types.Mesh) -> None:
@@ -57,7 +95,7 @@ def _drop_slots(mesh: bpy.types.Mesh, kept: set[int]) -> None:
     """Remove the slots of ours whose parts are not to be kept, and materials that nobody uses any more."""
     for slot in reversed(range(len(mesh.materials))):
         material = mesh.materials[slot]
-        if material is not None and material.get(PART_OF_MATERIAL, None) is not None:
+        if _is_own(material):
             if material[PART_OF_MATERIAL] in kept:
                 continue
             mesh.materials.pop(index=slot)
@@ -70,10 +108,14 @@ def _slot(mesh: bpy.types.Mesh, part: int) -> int:
     for slot, material in enumerate(mesh.materials):
         if material is not None and material.get(PART_OF_MATERIAL) == part:
             return slot
+    mesh.materials.append(_new_material(part))
+    return len(mesh.materials) - 1
+
+
+def _new_material(part: int) -> bpy.types.Material:
     material = bpy.data.materials.new("Part")
     material[PART_OF_MATERIAL] = part
-    mesh.materials.append(material)
-    return len(mesh.materials) - 1
+    return material
 
 
 def _dress(material: bpy.types.Material, name: str, colour: list[float]) -> None:

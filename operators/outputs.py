@@ -3,8 +3,9 @@
 from types import ModuleType
 
 import bpy
+import numpy as np
 
-from . import corner_colours, face_sets, field_values, material_slots, vertex_groups, vertex_map
+from . import corner_colours, face_sets, field_values, material_slots, part_table, vertex_groups, vertex_map
 from .division import Division
 from .exchange import OwnAttribute
 from .state import STATE
@@ -20,6 +21,8 @@ OUTPUTS: dict[str, tuple[str, str, ModuleType]] = {
 }
 DEFAULT = ("VERTEX_ATTRIBUTE", "CORNER_COLORS")
 COLOURED = ("CORNER_COLORS", "MATERIALS")
+# Those that are more than an attribute.
+COMPOUND = ("VERTEX_GROUPS", "MATERIALS")
 # In the state: the chosen ones, one a line, and the width over which vertex groups are softened.
 CHOSEN, SOFTNESS = "outputs", "softness"
 
@@ -48,16 +51,19 @@ def choose(mesh: bpy.types.Mesh, names: set[str], width: float) -> None:
     mesh[STATE][SOFTNESS] = width
 
 
-def write(mesh: bpy.types.Mesh, division: Division) -> None:
-    """Write the chosen outputs."""
+def division_of(mesh: bpy.types.Mesh, labels: np.ndarray) -> Division:
+    """Return what outputs need to know of the parts (F,) of the faces."""
+    present = np.flatnonzero(np.bincount(labels))
+    names = {part: part_table.name_of(mesh, part) for part in present.tolist()}
+    return Division(labels, names, part_table.colours(mesh, int(labels.max(initial=0)) + 1), softness(mesh))
+
+
+def write(mesh: bpy.types.Mesh, labels: np.ndarray, kinds: tuple[str, ...] = tuple(OUTPUTS)) -> None:
+    """Write those of the chosen outputs that are of some kinds."""
+    division = division_of(mesh, labels)
     for name in chosen(mesh):
-        OUTPUTS[name][2].write(mesh, division)
-
-
-def write_colours(mesh: bpy.types.Mesh, division: Division) -> None:
-    """Write those of the chosen outputs that show the colours of parts."""
-    for name in set(chosen(mesh)) & set(COLOURED):
-        OUTPUTS[name][2].write(mesh, division)
+        if name in kinds:
+            OUTPUTS[name][2].write(mesh, division)
 
 
 def remove(mesh: bpy.types.Mesh) -> None:

@@ -4,12 +4,11 @@ import bpy
 import numpy as np
 
 from . import correcting, corrections, engine, outputs, part_table, registered, state
-from .division import Division
-from .exchange import OwnAttribute, read_own_integers, refuse_foreign, write_attribute
+from .division import PART
+from .exchange import read_own_integers, refuse_foreign, write_attribute
 from .refusals import Refusal
+from .rollback import all_or_nothing
 from .soundness import lie_within
-
-PART = OwnAttribute("part", "INT", "FACE")
 
 
 def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: float) -> "engine.BranchLabels":
@@ -33,8 +32,9 @@ def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: flo
     labels = engine.label_branches(
         analysis.hierarchy, analysis.branches, mode=mode, corrections=analysis.corrections, **choice
     )
-    registered.take_back(mesh)
-    show_labels(mesh, labels, analysis.branches, mode)
+    with all_or_nothing(mesh):
+        registered.take_back(mesh)
+        show_labels(mesh, labels, analysis.branches, mode)
     return labels
 
 
@@ -71,8 +71,9 @@ def correct_mesh(
     )
     if changed is not None and changed in labels.resting:
         raise Refusal(correcting.NO_EFFECT)
-    correcting.store(mesh, analysis, painted)
-    show_labels(mesh, labels, analysis.branches, mode)
+    with all_or_nothing(mesh):
+        correcting.store(mesh, analysis, painted)
+        show_labels(mesh, labels, analysis.branches, mode)
 
 
 def show_labels(
@@ -85,7 +86,7 @@ def show_labels(
     part_table.number_parts(mesh, labels.parts)
     _list_parts(mesh, labels.parts)
     _list_corrections(mesh, labels.resting)
-    outputs.write(mesh, _division(mesh, of_faces))
+    outputs.write(mesh, of_faces)
     mesh.update()
 
 
@@ -103,14 +104,15 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
     names = set(outputs.chosen(mesh)) if names is None else names
     refuse_foreign(mesh, outputs.own_attributes(names))
     labels = read_labels(mesh)
-    outputs.choose(mesh, names, outputs.softness(mesh) if softness is None else softness)
-    outputs.write(mesh, _division(mesh, labels))
+    with all_or_nothing(mesh):
+        outputs.choose(mesh, names, outputs.softness(mesh) if softness is None else softness)
+        outputs.write(mesh, labels)
     mesh.update()
 
 
 def recolour(mesh: bpy.types.Mesh) -> None:
     """Give the outputs of a mesh that show colours those that its parts have by now."""
-    outputs.write_colours(mesh, _division(mesh, read_labels(mesh)))
+    outputs.write(mesh, read_labels(mesh), outputs.COLOURED)
     mesh.update()
 
 
@@ -125,12 +127,6 @@ def read_labels(mesh: bpy.types.Mesh) -> np.ndarray:
     if not lie_within(labels, 0, state.MOST_LABELS):
         raise Refusal(state.DAMAGED)
     return labels
-
-
-def _division(mesh: bpy.types.Mesh, labels: np.ndarray) -> Division:
-    present = np.flatnonzero(np.bincount(labels))
-    names = {part: part_table.name_of(mesh, part) for part in present.tolist()}
-    return Division(labels, names, part_table.colours(mesh, int(labels.max(initial=0)) + 1), outputs.softness(mesh))
 
 
 def _list_parts(mesh: bpy.types.Mesh, parts: "engine.Parts") -> None:

@@ -8,6 +8,7 @@ from . import part_table, state
 from .exchange import remove_own_attributes
 from .refusals import Refusal, can_use_active_mesh, refusals_told
 from .results import read_labels
+from .rollback import nothing_left_behind
 
 
 class EIGENPARTS_OT_separate(bpy.types.Operator):
@@ -22,7 +23,7 @@ class EIGENPARTS_OT_separate(bpy.types.Operator):
         return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        with refusals_told(self):
+        with refusals_told(self), nothing_left_behind(context):
             pieces = separate_parts(context.object)
             for piece in pieces:
                 piece.select_set(True)
@@ -43,8 +44,10 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
     if len(parts) < 2:
         raise Refusal("The mesh is one part; there is nothing to separate.")
     names = {part: f"{obj.name} {part_table.name_of(mesh, part)}" for part in parts}
-    others = [_copy(obj, _mesh_of_part(mesh, labels == part, names[part]), names[part]) for part in parts[1:]]
-    obj.data = _mesh_of_part(mesh, labels == parts[0], names[parts[0]])
+    own, *meshes = [_mesh_of_part(mesh, labels == part, names[part]) for part in parts]
+    others = [_copy(obj, piece, names[part]) for part, piece in zip(parts[1:], meshes, strict=True)]
+    # From here on nothing can fail.
+    obj.data = own
     if mesh.users == 0:
         bpy.data.meshes.remove(mesh)
     return [obj, *others]

@@ -1,6 +1,7 @@
 """Operator: give the selected meshes what the active one has, from weights to materials."""
 
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,6 +13,7 @@ from . import exchange, part_table, registered
 from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
 from .layer_reading import Choice, read_layers
+from .layer_rollback import layers_or_nothing
 from .layer_transferring import Body, Transferred, transfer_bodies
 from .layer_writing import Mix, refuse_obstacles, write_layers
 from .layers import PARTS, Layer
@@ -134,8 +136,11 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
         objects = [_find(uid, ticket) for uid, ticket in zip(destination.objects, destination.tickets, strict=True)]
         for obj, result in zip(objects, transferred, strict=True):
             refuse_obstacles(obj, result.layers, self._mix())
+        with ExitStack() as all_of_them:
+            for obj, result in zip(objects, transferred, strict=True):
+                all_of_them.enter_context(layers_or_nothing(obj, result.layers))
+                write_layers(obj, result.layers, self._mix(), destination.colours)
         for obj, result in zip(objects, transferred, strict=True):
-            write_layers(obj, result.layers, self._mix(), destination.colours)
             if self.selects_unsure:
                 _select(obj.data, ~result.is_sure)
             self._tell(obj, destination.source, result)

@@ -36,6 +36,19 @@ def remove(mesh: bpy.types.Mesh) -> None:
         del mesh[OWN_GROUPS]
 
 
+def all_names(mesh: bpy.types.Mesh) -> tuple[str, ...]:
+    """Return the names of all groups that the mesh has, of whoever."""
+    obj = _object_of(mesh)
+    return () if obj is None else tuple(group.name for group in obj.vertex_groups)
+
+
+def keep_only(mesh: bpy.types.Mesh, names: tuple[str, ...]) -> None:
+    """Remove all groups that have other names."""
+    obj = _object_of(mesh)
+    if obj is not None:
+        _drop(obj, [name for name in all_names(mesh) if name not in names])
+
+
 def _object_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
     """Return an object that uses the mesh; all that do share its groups."""
     return next((obj for obj in bpy.data.objects if obj.data == mesh), None)
