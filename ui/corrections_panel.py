@@ -64,7 +64,7 @@ def _draw_part(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, ro
     along_field = layout.column(align=True)
     along_field.enabled = row.part != 0
     along_field.prop(settings, "part_level")
-    along_field.prop(settings, "part_border")
+    along_field.prop(settings, "part_border", slider=True)
     along_field.operator("eigenparts.split_part", icon="MOD_BEVEL").part = row.part
     layout.menu("EIGENPARTS_MT_merge", icon="AUTOMERGE_ON")
     faces = layout.column(align=True)

@@ -5,7 +5,7 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import faults, registered, state
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
-from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_main_button, draw_sentence
+from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_sentence, main_row
 
 # Rows of the list, always the same, so that nothing below it jumps when the level moves.
 N_ROWS = 8
@@ -23,8 +23,9 @@ class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.enabled = not status.is_running
         _draw_field(column, context.scene.eigenparts, active_mesh(context))
-        row = draw_main_button(layout, context, "eigenparts.analyze", "MOD_EXPLODE")
-        if not status.is_running:
+        row = main_row(layout, context)
+        if row is not None:
+            row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
             row.operator("eigenparts.clear", text="", icon="TRASH")
         fault = faults.last()
         if fault is not None:

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
+from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis, main_row
 
 
 class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
@@ -20,9 +20,10 @@ class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
         settings = context.scene.eigenparts_skeleton
         layout.prop(settings, "weights")
         layout.prop(settings, "bones_in_limbs")
-        column = layout.column(align=True)
-        column.operator("eigenparts.create_armature", icon="ARMATURE_DATA")
-        column.operator("eigenparts.create_skeleton_curves", text="Curves", icon="CURVE_DATA")
+        row = main_row(layout, context)
+        if row is not None:
+            row.operator("eigenparts.create_armature", icon="ARMATURE_DATA")
+        layout.operator("eigenparts.create_skeleton_curves", text="Curves", icon="CURVE_DATA")
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_skeleton,))

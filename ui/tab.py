@@ -1,11 +1,14 @@
 """What the panels of the sidebar tab have in common."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import state
 
 # What is said where there is nothing to show yet.
 NO_MESH = "Select a mesh object first."
+# Height of the button that a panel is there for, in rows.
+MAIN_BUTTON = 1.3
 
 
 class EigenpartsPanel:
@@ -32,6 +35,34 @@ def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context
     layout.label(text=NO_MESH if active_mesh(context) is None else state.ABSENT)
 
 
+def main_row(layout: bpy.types.UILayout, context: bpy.types.Context) -> bpy.types.UILayout | None:
+    """Return the row of the button a panel is there for; None while a job runs, whose progress is drawn there."""
+    row = layout.row(align=True)
+    row.scale_y = MAIN_BUTTON
+    status = context.window_manager.eigenparts
+    if not status.is_running:
+        return row
+    row.progress(factor=status.fraction, text=status.text)
+    row.operator("eigenparts.cancel", text="", icon="X")
+    return None
+
+
+def draw_direction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Say from which mesh to how many others something goes."""
+    source, others = context.object, other_meshes(context)
+    if not others or active_mesh(context) is None:
+        layout.label(text="Select the others, this one last", icon="INFO")
+        return
+    text = translated("{source} to {target}") if len(others) == 1 else translated("{source} to {count} others")
+    layout.label(text=text.format(source=source.name, target=others[0].name, count=len(others)), translate=False)
+
+
+def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Return the selected mesh objects that share no mesh with the active object."""
+    active = context.object
+    return [obj for obj in context.selected_objects if obj.type == "MESH" and (not active or obj.data != active.data)]
+
+
 def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
     """Draw a sentence in as many lines as the sidebar needs."""
     # Without a window the interface has no scale.
@@ -39,7 +70,7 @@ def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None
     column = layout.column(align=True)
     column.alert = True
     line = ""
-    for word in bpy.app.translations.pgettext_iface(sentence).split():
+    for word in translated(sentence).split():
         if len(line) + len(word) >= n_letters:
             column.label(text=line, translate=False)
             line = ""

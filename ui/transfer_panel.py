@@ -2,7 +2,7 @@
 
 import bpy
 
-from .tab import EigenpartsPanel
+from .tab import EigenpartsPanel, draw_direction, main_row, other_meshes
 
 
 class EIGENPARTS_PT_transfer(EigenpartsPanel, bpy.types.Panel):
@@ -12,17 +12,41 @@ class EIGENPARTS_PT_transfer(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        options = context.scene.eigenparts_transfer
+        draw_direction(layout, context)
+        grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+        grid.prop(options, "layers")
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        if "GROUPS" in options.layers:
+            column.prop(options, "groups")
+        if "GROUPS" in options.layers and options.groups == "NAMED":
+            column.prop(options, "group_names")
+        row = main_row(layout, context)
+        if row is not None:
+            row.operator("eigenparts.transfer", icon="MOD_DATA_TRANSFER")
+
+
+class EIGENPARTS_PT_transfer_options(EigenpartsPanel, bpy.types.Panel):
+    bl_label = "Options"
+    bl_parent_id = "EIGENPARTS_PT_transfer"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        options = context.scene.eigenparts_transfer
-        layout.column(heading="").prop(options, "layers")
-        if "GROUPS" in options.layers:
-            layout.prop(options, "groups")
-        if "GROUPS" in options.layers and options.groups == "NAMED":
-            layout.prop(options, "group_names")
-        for name in ("factor", "mask", "unsure", "selects_unsure", "mirrored", "use_modifiers"):
-            layout.prop(options, name)
-        layout.operator("eigenparts.transfer", icon="MOD_DATA_TRANSFER")
+        options, others = context.scene.eigenparts_transfer, other_meshes(context)
+        layout.prop(options, "mirrored")
+        layout.prop(options, "use_modifiers")
+        layout.prop(options, "factor")
+        if others:
+            layout.prop_search(options, "mask", others[0], "vertex_groups")
+        else:
+            layout.prop(options, "mask")
+        layout.prop(options, "unsure")
+        layout.prop(options, "selects_unsure")
 
 
-register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_transfer,))
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_transfer, EIGENPARTS_PT_transfer_options))

@@ -6,7 +6,7 @@ import bpy
 
 PANELS = (
     *("analyze", "options", "function_hints", "level", "parts", "outputs", "corrections", "register"),
-    *("transfer", "skeleton", "topology"),
+    *("transfer", "transfer_options", "skeleton", "topology"),
 )
 
 
@@ -18,6 +18,9 @@ class Layout:
 
     def __getattr__(self, name):
         return lambda *arguments, **options: Layout(self.labels)
+
+    def panel(self, name, **options):
+        return Layout(self.labels), Layout(self.labels)
 
     def label(self, text="", **options):
         self.labels.append(text)
@@ -37,6 +40,7 @@ def draw_panels():
     context = SimpleNamespace(
         scene=bpy.context.scene,
         object=bpy.context.object,
+        selected_objects=bpy.context.selected_objects,
         view_layer=bpy.context.view_layer,
         window_manager=bpy.context.window_manager,
         region=SimpleNamespace(width=300),
