@@ -38,7 +38,7 @@ class Outcome:
 
 
 class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
-    """Find the features of the active mesh and divide it into parts"""
+    """Find what protrudes on the active mesh, such as limbs, heads and fingers, and divide it into parts"""
 
     bl_idname = "eigenparts.analyze"
     bl_label = "Analyze"

@@ -9,7 +9,7 @@ from .viewport import restore_colour_types
 
 
 class EIGENPARTS_OT_clear(bpy.types.Operator):
-    """Remove the analysis, the parts and their colours from the active mesh"""
+    """Remove all that Eigenparts left on the active mesh: analysis, parts and what shows them; what is yours stays"""
 
     bl_idname = "eigenparts.clear"
     bl_label = "Clear"

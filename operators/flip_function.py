@@ -21,7 +21,11 @@ class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     number: IntProperty(
-        name="Function", description="Of the reference, from the smoothest", default=1, min=1, max=SHOWN_FUNCTIONS
+        name="Function",
+        description="Which function of the reference, counted from the smoothest",
+        default=1,
+        min=1,
+        max=SHOWN_FUNCTIONS,
     )
 
     def wish(self, match: Match) -> Wish:

@@ -57,7 +57,7 @@ EigenpartsPreferences.__annotations__ |= {
 
 
 class EIGENPARTS_OT_reset_colors(bpy.types.Operator):
-    """Go back to the colors that colour-blind people can tell apart too"""
+    """Go back to the colors that color-blind people can tell apart too"""
 
     bl_idname = "eigenparts.reset_colors"
     bl_label = "Reset Colors"

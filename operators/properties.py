@@ -42,8 +42,12 @@ class AnalysisOptions:
             ("ATTRIBUTE", "Attribute", "Your own values: a float attribute of the vertices"),
         ],
     )
-    eigenfunction: IntProperty(name="Number", description="Which eigenfunction, from the smoothest", default=1, min=1)
-    attribute: StringProperty(name="Attribute", description="Name of a float attribute of the vertices")
+    eigenfunction: IntProperty(
+        name="Number", description="Which eigenfunction, counted from the smoothest", default=1, min=1
+    )
+    attribute: StringProperty(
+        name="Attribute", description="Name of the attribute that has your values, one decimal number for each vertex"
+    )
     order: EnumProperty(
         name="Order",
         description="Degree of the finite elements: higher is more accurate and slower",
@@ -132,11 +136,16 @@ class EigenpartsPartRow(bpy.types.PropertyGroup):
     part: IntProperty(name="Number", description="Label of the part; 0 is the body")
     depth: IntProperty(name="Depth", description="How many parts it is a part of")
     share: FloatProperty(name="Area", description="Fraction of the whole area", subtype="FACTOR")
-    n_faces: IntProperty(name="Faces")
-    title: StringProperty(name="Name", description="Name of the part; empty: as it was first", get=_name, set=_set_name)
+    n_faces: IntProperty(name="Faces", description="How many faces the part has")
+    title: StringProperty(
+        name="Name",
+        description="Name of the part; double-click to change it, empty for the name it had first",
+        get=_name,
+        set=_set_name,
+    )
     color: FloatVectorProperty(
         name="Color",
-        description="Color of the part",
+        description="Color of the part; click to change it",
         subtype="COLOR",
         size=3,
         min=0,
@@ -184,7 +193,7 @@ class EigenpartsCorrectionRow(bpy.types.PropertyGroup):
     """A correction in the list of the panel."""
 
     place: IntProperty(name="Correction", description="Its place in the list, from 0")
-    title: StringProperty(name="Correction")
+    title: StringProperty(name="Correction", description="What was corrected")
     rests: BoolProperty(name="Rests", description="This level has not the parts it belongs to, so it does nothing now")
 
 
@@ -238,7 +247,10 @@ class EigenpartsMeshSettings(bpy.types.PropertyGroup):
     rows: CollectionProperty(type=EigenpartsPartRow)
     active_part: IntProperty(name="Active Part", description="Number of the part that was clicked last", default=-1)
     active_row: IntProperty(
-        name="Part", description="Selects and outlines the part", get=_active_row, set=_set_active_row
+        name="Part",
+        description="Click to select the faces of the part and to outline it in the view",
+        get=_active_row,
+        set=_set_active_row,
     )
     part_level: IntProperty(
         name="Level of Part",
@@ -261,7 +273,7 @@ class EigenpartsMeshSettings(bpy.types.PropertyGroup):
         set=_set_part_border,
     )
     correction_rows: CollectionProperty(type=EigenpartsCorrectionRow)
-    active_correction: IntProperty(name="Correction")
+    active_correction: IntProperty(name="Correction", description="A correction; the cross takes it back")
     vertex_attribute: _tick_box("VERTEX_ATTRIBUTE")
     corner_colors: _tick_box("CORNER_COLORS")
     face_sets: _tick_box("FACE_SETS")

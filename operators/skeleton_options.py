@@ -25,7 +25,7 @@ class ArmatureOptions(SkeletonOptions):
         items=[
             ("PARTS", "From Parts", "Each bone moves its part, with soft borders at the joints"),
             ("AUTOMATIC", "Automatic", "Blender's own automatic weights"),
-            ("NONE", "None", "Only the armature"),
+            ("NONE", "None", "The armature is made, but the mesh is not bound to it"),
         ],
     )
 

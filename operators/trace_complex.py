@@ -41,7 +41,9 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     level: IntProperty(name="Level", description="How many features to keep; -1 for the default", default=-1, min=-1)
-    thickness: FloatProperty(name="Thickness", description="Of lines and dots", default=1.0, min=0.01)
+    thickness: FloatProperty(
+        name="Thickness", description="How thick lines and dots are, as a multiple of the usual", default=1.0, min=0.01
+    )
 
     def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
         found = traced_complex(analysis, None if self.level < 0 else self.level)

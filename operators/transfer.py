@@ -45,7 +45,7 @@ class TransferOptions:
 
     layers: EnumProperty(
         name="Layers",
-        description="What is transferred",
+        description="What the other meshes are given",
         options={"ENUM_FLAG"},
         items=[
             ("GROUPS", "Vertex Groups", "Weights, such as those of an armature"),
@@ -61,7 +61,7 @@ class TransferOptions:
     )
     groups: EnumProperty(
         name="Groups",
-        description="Which vertex groups are transferred",
+        description="Which of the vertex groups the other meshes are given",
         items=[
             ("ALL", "All", "All vertex groups"),
             ("DEFORM", "Deform Bones", "Those of bones that deform the mesh"),
@@ -70,12 +70,20 @@ class TransferOptions:
     )
     group_names: StringProperty(name="Names", description="Names of vertex groups with commas between them")
     factor: FloatProperty(
-        name="Mix", description="How much replaces what is there", subtype="FACTOR", min=0, max=1, default=1
+        name="Mix",
+        description="How much of what is there is replaced: 0 for nothing, 1 for all of it",
+        subtype="FACTOR",
+        min=0,
+        max=1,
+        default=1,
     )
-    mask: StringProperty(name="Mask", description="Vertex group of the other meshes that limits where it is written")
+    mask: StringProperty(
+        name="Mask",
+        description="Name of a vertex group of the other meshes: something is written only where it has weight",
+    )
     unsure: EnumProperty(
         name="Unsure",
-        description="What vertices get whose place is not sure",
+        description="What is written to vertices whose place on the active mesh is not sure",
         items=[
             ("TAKE", "Take Over", "What is found at the most likely place"),
             ("FILL", "Fill In", "What fits smoothly to the sure vertices around them"),

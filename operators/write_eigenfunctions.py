@@ -23,7 +23,13 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator)
     bl_label = "Write Eigenfunctions"
     bl_options = {"UNDO"}
 
-    n_functions: IntProperty(name="Number", description="How many, from the smoothest", default=6, min=1, soft_max=30)
+    n_functions: IntProperty(
+        name="Number",
+        description="How many functions are written, from the smoothest on",
+        default=6,
+        min=1,
+        soft_max=30,
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

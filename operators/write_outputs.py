@@ -16,7 +16,7 @@ class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
 
     outputs: EnumProperty(
         name="Outputs",
-        description="What the mesh has beside the face map, and what follows the level",
+        description="What the parts are written to, beside the attribute of the faces; all of it follows the level",
         items=[
             (key, name, description, 2**i) for i, (key, (name, description, _)) in enumerate(outputs.OUTPUTS.items())
         ],

@@ -5,10 +5,11 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import faults, registered, state
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
-from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_sentence, main_row
+from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_hint, draw_sentence, main_row
 
 # Rows of the list, always the same, so that nothing below it jumps when the level moves.
 N_ROWS = 8
+FIRST_STEP = "Press Analyze: what protrudes becomes parts, such as limbs and fingers. Then move the level."
 
 
 class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
@@ -59,7 +60,10 @@ class EIGENPARTS_PT_level(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, mesh = self.layout, active_mesh(context)
-        layout.label(text=_told(mesh), translate=False)
+        if mesh is not None and not state.is_analyzed(mesh):
+            draw_hint(layout, FIRST_STEP, context.region.width)
+        else:
+            layout.label(text=_told(mesh), translate=False)
         if mesh is not None:
             _draw_level(layout.column(), mesh)
             _draw_problems(layout, context, mesh)

@@ -64,11 +64,17 @@ def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
+    """Draw a sentence in as many lines as the sidebar needs, in the colour of what went wrong."""
+    column = layout.column(align=True)
+    column.alert = True
+    draw_hint(column, sentence, width)
+
+
+def draw_hint(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
     """Draw a sentence in as many lines as the sidebar needs."""
     # Without a window the interface has no scale.
     n_letters = max(20, int(width / (7 * (bpy.context.preferences.system.ui_scale or 1))))
     column = layout.column(align=True)
-    column.alert = True
     line = ""
     for word in translated(sentence).split():
         if len(line) + len(word) >= n_letters:

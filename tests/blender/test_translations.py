@@ -25,7 +25,8 @@ def texts_of_window(extension):
         *(texts_of_properties(kind) for kind in own_classes(bpy.types.AddonPreferences)),
         *(texts_of_property(switch) for switch in own_switches()),
         *map(texts_of_source, (ROOT / "ui").glob("*.py")),
-        {extension.ui.tab.NO_MESH, extension.operators.state.ABSENT, extension.operators.state.DAMAGED},
+        {extension.ui.tab.NO_MESH, extension.ui.panel.FIRST_STEP},
+        {extension.operators.state.ABSENT, extension.operators.state.DAMAGED},
     )
     return {text for text in found if any(letter.isalpha() for letter in text)} - NAMES
 
@@ -46,8 +47,12 @@ def texts_of_operator(rna):
 
 
 def texts_of_properties(kind):
+    return set().union(*map(texts_of_property, own_properties(kind)))
+
+
+def own_properties(kind):
     names = {name for base in kind.__mro__ for name in getattr(base, "__annotations__", ())}
-    return set().union(*(texts_of_property(kind.bl_rna.properties[name]) for name in names))
+    return [kind.bl_rna.properties[name] for name in names]
 
 
 def texts_of_property(entry):
@@ -70,12 +75,30 @@ def texts_of_source(path):
 def test_the_texts_are_found(extension):
     assert {
         "Analyze",  # operator
-        "Find the features of the active mesh and divide it into parts",  # its tooltip
+        "Find what protrudes on the active mesh, such as limbs, heads and fingers, and divide it into parts",
         "Default Level",  # drawn
         "Cubic as long as it is cheap, then quadratic, then linear",  # item of a list
         "Draw the borders between parts",  # switch
         "Parts of {name}",  # translated before it is filled
     } <= texts_of_window(extension)
+
+
+# What Blender fills in or never shows, and collections, which are shown row by row.
+WITHOUT_TOOLTIP = {"rows", "correction_rows", "is_running", "is_picking", "fraction", "text", "shown", "problem"}
+
+
+def test_every_property_says_more_than_what_it_is_called(extension):
+    operators = [getattr(bpy.ops.eigenparts, name).get_rna_type() for name in dir(bpy.ops.eigenparts)]
+    entries = [
+        *(entry for rna in operators for entry in rna.properties if entry.identifier not in OF_BLENDER),
+        *(entry for kind in own_classes(bpy.types.PropertyGroup) for entry in own_properties(kind)),
+        *(entry for kind in own_classes(bpy.types.AddonPreferences) for entry in own_properties(kind)),
+        *own_switches(),
+    ]
+    assert [rna.identifier for rna in operators if len(rna.description.split()) < 4] == []
+    items = [item for entry in entries if entry.type == "ENUM" for item in entry.enum_items]
+    silent = {entry.identifier for entry in (*entries, *items) if len(entry.description) <= len(entry.name)}
+    assert silent <= WITHOUT_TOOLTIP
 
 
 @pytest.mark.parametrize("language", ["de_DE"])
