@@ -19,14 +19,15 @@ from .layer_writing import Mix, refuse_obstacles, write_layers
 from .layers import PARTS, Layer
 from .refusals import Refusal, in_name_of, refuse_unwritable
 from .register_selected import can_start_with_others, other_meshes
+from .sentences import tell
 from .state import is_analyzed
 
 NOTHING_ELSE = "Select the meshes to transfer to, and last the one to transfer from."
 HAS_PARTS = "{} was analyzed and keeps its own parts; Register Selected gives it those of {}."
 FOUND_BY = {
-    "number": "vertices correspond by their numbers",
-    "faces": "the same faces under other numbers",
-    "shape": "matched by shape",
+    "number": "Vertices correspond by their numbers.",
+    "faces": "The faces are the same under other numbers.",
+    "shape": "Matched by shape.",
 }
 
 
@@ -164,17 +165,22 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
         return Mix(self.factor, self.mask)
 
     def _tell(self, obj: bpy.types.Object, source: str, result: Transferred) -> None:
-        n_layers = "1 layer" if len(result.layers) == 1 else f"{len(result.layers)} layers"
-        n_unsure, n_vertices = int((~result.is_sure).sum()), len(result.is_sure)
-        done = " and were filled in" if self.unsure == "FILL" else ""
-        unsure = f"; {n_unsure} of {n_vertices} vertices are unsure{done}" if n_unsure else ""
-        self.report({"INFO"}, f"{obj.name}: {n_layers} of {source}, {FOUND_BY[result.found_by]}{unsure}.")
+        n_layers = len(result.layers)
+        given = f"{obj.name}: {n_layers} layers of {source}." if n_layers > 1 else f"{obj.name}: 1 layer of {source}."
+        tell(self, "INFO", given, FOUND_BY[result.found_by], self._unsure(result))
         if result.confidence <= registered.SURE:
-            self.report({"WARNING"}, f"{obj.name} is matched with a confidence of {result.confidence:.0%} only.")
+            tell(self, "WARNING", f"{obj.name} is matched with a confidence of {result.confidence:.0%} only.")
         for name in result.torn_seams:
-            self.report({"WARNING"}, f'{obj.name}: the seams of "{name}" could not be kept, there are too many pieces.')
+            tell(self, "WARNING", f'{obj.name}: the seams of "{name}" could not be kept, there are too many pieces.')
         if is_analyzed(obj.data) and any(layer.kind == PARTS for layer in result.layers):
-            self.report({"WARNING"}, HAS_PARTS.format(obj.name, source))
+            tell(self, "WARNING", HAS_PARTS.format(obj.name, source))
+
+    def _unsure(self, result: Transferred) -> str:
+        """Return how many vertices are unsure; empty if all are sure."""
+        n_unsure, n_vertices = int((~result.is_sure).sum()), len(result.is_sure)
+        if n_unsure and self.unsure == "FILL":
+            return f"{n_unsure} of {n_vertices} vertices are unsure and were filled in."
+        return f"{n_unsure} of {n_vertices} vertices are unsure." if n_unsure else ""
 
 
 def _transfer(
@@ -233,8 +239,12 @@ def _find(session_uid: int, ticket: Ticket) -> bpy.types.Object:
 def _select(mesh: bpy.types.Mesh, is_selected: np.ndarray) -> None:
     """Select vertices and nothing else."""
     mesh.vertices.foreach_set("select", is_selected)
-    for elements in (mesh.edges, mesh.polygons):
-        elements.foreach_set("select", np.zeros(len(elements), dtype=bool))
+    # Where these are absent nothing is selected. Blender 5.0 makes edges from Python with one of a wrong type, and
+    # ends when it is written to.
+    for name in (".select_edge", ".select_poly"):
+        found = mesh.attributes.get(name)
+        if found is not None:
+            mesh.attributes.remove(found)
     mesh.update()
 
 
