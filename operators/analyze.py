@@ -13,6 +13,7 @@ from . import engine, exchange, function_hints, recent_analyses, results, state
 from .analysis_request import AnalysisRequest
 from .refusals import Refusal
 from .rollback import all_or_nothing
+from .sentences import tell
 from .viewport import show_vertex_colours
 
 
@@ -59,8 +60,8 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
         for warning in (*outcome.warnings, *told, *labels.warnings):
-            self.report({"WARNING"}, warning)
-        self.report({"INFO"}, _told(len(labels.parts), outcome.seconds) + function_hints.sentence(mesh))
+            tell(self, "WARNING", warning)
+        tell(self, "INFO", _told(len(labels.parts), outcome.seconds), function_hints.sentence(mesh))
         return {"FINISHED"}
 
 

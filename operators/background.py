@@ -10,6 +10,7 @@ from .faults import errors_told
 from .job import Job
 from .preferences import use_preferred_threads
 from .refusals import refusals_told
+from .sentences import in_language, tell
 
 # Seconds between looks at the job; redrawing more often only takes time from it.
 INTERVAL = 0.1
@@ -48,7 +49,7 @@ class BackgroundOperator:
             self._job.cancel()
         if self._job is not _running or self._job.is_cancelled:
             self._leave(context)
-            self.report({"INFO"}, "Cancelled; nothing was changed.")
+            tell(self, "INFO", "Cancelled; nothing was changed.")
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
@@ -102,10 +103,11 @@ def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
 
 def _show_progress(context: bpy.types.Context, job: Job) -> None:
     status = context.window_manager.eigenparts
-    shown = f"Eigenparts: {job.text} ({job.fraction:.0%}), ESC to cancel"
+    text = in_language(job.text)
+    shown = in_language(f"Eigenparts: {text} ({job.fraction:.0%}), ESC to cancel")
     if status.is_running and status.shown == shown:
         return
-    status.is_running, status.fraction, status.text, status.shown = True, job.fraction, job.text, shown
+    status.is_running, status.fraction, status.text, status.shown = True, job.fraction, text, shown
     context.window_manager.progress_update(100 * job.fraction)
     context.workspace.status_text_set(shown)
     _redraw_sidebars(context)

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import faults, state
 from .refusals import Refusal
+from .sentences import tell
 
 MANIFEST = Path(__file__).parents[1] / "blender_manifest.toml"
 
@@ -24,7 +25,7 @@ class EIGENPARTS_OT_copy_report(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         context.window_manager.clipboard = report(context)
-        self.report({"INFO"}, "The bug report is on the clipboard; paste it where you report the problem.")
+        tell(self, "INFO", "The bug report is on the clipboard; paste it where you report the problem.")
         return {"FINISHED"}
 
 

@@ -9,6 +9,7 @@ from . import part_table
 from .analyze import Ticket
 from .bone_names import name_bones
 from .refusals import Refusal
+from .sentences import tell
 from .skeleton_options import ArmatureOptions
 from .skeleton_request import Laid, SkeletonRequest, part_names
 
@@ -54,8 +55,8 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
         elif self.weights == "AUTOMATIC":
             bind_automatically(context, obj, armature)
             if not _is_bound(obj, names):
-                self.report({"WARNING"}, NOT_BOUND)
-        self.report({"INFO"}, f"{len(names)} bones in {armature.name}.")
+                tell(self, "WARNING", NOT_BOUND)
+        tell(self, "INFO", f"{len(names)} bones in {armature.name}.")
 
 
 def add_armature(context: bpy.types.Context, obj: bpy.types.Object, laid: Laid, names: list[str]) -> bpy.types.Object:

@@ -3,6 +3,7 @@
 import bpy
 import numpy as np
 
+from .sentences import tell
 from .skeleton_request import Laid, SkeletonRequest, part_names
 
 # On the curve: the part that each of its splines lies in, by name.
@@ -26,7 +27,7 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
         curve.data[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
         context.view_layer.objects.active = curve
         curve.select_set(True)
-        self.report({"INFO"}, f"{len(rows)} splines in {curve.name}.")
+        tell(self, "INFO", f"{len(rows)} splines in {curve.name}.")
 
 
 def rows_of_bones(parent: np.ndarray, part: np.ndarray, loops: np.ndarray) -> list[list[int]]:

@@ -9,6 +9,7 @@ from .exchange import read_mesh
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
 from .rollback import all_or_nothing, faces_or_nothing
+from .sentences import tell
 
 
 class EIGENPARTS_OT_cut(bpy.types.Operator):
@@ -41,7 +42,7 @@ class EIGENPARTS_OT_cut(bpy.types.Operator):
                 else:
                     move_borders(context.object.data)
             n_new = len(context.object.data.polygons) - n_before
-            self.report({"INFO"}, f"{n_new} faces were added." if n_new else "The borders run along edges.")
+            tell(self, "INFO", f"{n_new} faces were added." if n_new else "The borders run along edges.")
             return {"FINISHED"}
         return {"CANCELLED"}
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 
 from .refusals import refusals_told
+from .sentences import tell
 
 OUT_OF_MEMORY = "There is not enough memory for this; try linear elements or a mesh with fewer faces."
 PACKAGE = Path(__file__).parents[1]
@@ -40,7 +41,7 @@ def errors_told(operator: bpy.types.Operator) -> Iterator[None]:
             yield
     except Exception as error:
         # Whatever it is, the window must not show a traceback for it.
-        operator.report({"ERROR"}, remember(error).sentence)
+        tell(operator, "ERROR", remember(error).sentence)
 
 
 def remember(error: Exception) -> Fault:

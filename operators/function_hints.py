@@ -33,9 +33,9 @@ def read(mesh: bpy.types.Mesh) -> list[tuple[int, int, int]]:
 
 
 def sentence(mesh: bpy.types.Mesh) -> str:
-    """Return which function suits best, in words that can follow others; empty if it is not known."""
+    """Return which function suits best; empty if it is not known."""
     hints = read(mesh)
     if not hints or hints[0][2] == 0:
         return ""
     number, n_held, n_protrusions = hints[0]
-    return f" Eigenfunction {number} suits best: its parts hold {n_held} of {n_protrusions} protrusions."
+    return f"Eigenfunction {number} suits best: its parts hold {n_held} of {n_protrusions} protrusions."

@@ -26,8 +26,8 @@ class Job:
     """
 
     def __init__(self, work: Callable[[Callable[[float, str], None]], Any]) -> None:
-        self.fraction, self.text = 0.0, "Waiting for the cancelled job to stop"
         self._stop = threading.Event()
+        self._report(0.0, "Waiting for the cancelled job to stop")
         self._outcome: Future[Any] = Future()
         threading.Thread(target=self._run, args=[work], daemon=True, name="eigenparts").start()
 

@@ -8,9 +8,10 @@ from mathutils import Vector
 from . import part_table
 from .refusals import Refusal, refusals_told
 from .results import PART
+from .sentences import in_language
 from .state import is_analyzed
 
-HOW = "Click a part; ESC or right click when done"
+HOW = "Click a part; ESC or right click when done."
 NOTHING = "There is no surface here."
 NO_PARTS = "This object has no parts; analyze it first."
 # Where a ray that goes on behind an object begins, as a fraction of the way to it.
@@ -134,7 +135,7 @@ def _show_in_headers(text: str | None) -> None:
     for screen in bpy.data.screens:
         for area in screen.areas:
             if area.type == "VIEW_3D":
-                area.header_text_set(text)
+                area.header_text_set(text and in_language(text))
 
 
 def _first_hit(

@@ -9,6 +9,7 @@ from . import engine
 from .diagram_picture import Plotted, draw_diagram
 from .fresh_analysis import FreshAnalysis
 from .lettering import Lettering
+from .sentences import tell
 
 # The object an image of ours belongs to, so that it is drawn over and no other image is.
 OF_OBJECT = "eigenparts_diagram"
@@ -27,7 +28,7 @@ class EIGENPARTS_OT_plot_diagram(FreshAnalysis, bpy.types.Operator):
         with Lettering() as letters:
             image = write_image(name, draw_diagram(plotted, letters.triangles))
         show_image(context, image)
-        self.report({"INFO"}, f'The diagram is in the image "{image.name}".')
+        tell(self, "INFO", f'The diagram is in the image "{image.name}".')
         return {"FINISHED"}
 
 

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 import bpy
 
 from . import engine
+from .sentences import tell
 
 IN_EDIT_MODE = "Leave edit mode first; results are written to the mesh as a whole."
 LINKED = "The mesh is linked from another file; make it local first."
@@ -21,7 +22,7 @@ def refusals_told(operator: bpy.types.Operator) -> Iterator[None]:
     try:
         yield
     except (Refusal, engine.EngineError) as error:
-        operator.report({"ERROR"}, str(error))
+        tell(operator, "ERROR", str(error))
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from .properties import AnalysisOptions
 from .refusals import Refusal, in_name_of, refuse_unwritable
 from .registration import SHOWN_FUNCTIONS, Found, Registration, Shown, Subject, Wish, register_subjects
 from .rollback import all_or_nothing
+from .sentences import tell
 from .viewport import show_vertex_colours
 
 SETTINGS = tuple(AnalysisOptions.__annotations__)
@@ -68,10 +69,12 @@ class Registers(BackgroundOperator):
         confidences = [found.matching.confidence for found in registration.found]
         lowest = min(confidences)
         name = names[confidences.index(lowest)]
-        n_objects = "1 object" if len(confidences) == 1 else f"{len(confidences)} objects"
-        self.report({"INFO"}, f"Registered {n_objects} to {reference}; least sure: {name}, {lowest:.0%}.")
+        if len(names) == 1:
+            tell(self, "INFO", f"Registered 1 object to {reference}; least sure: {name}, {lowest:.0%}.")
+        else:
+            tell(self, "INFO", f"Registered {len(names)} objects to {reference}; least sure: {name}, {lowest:.0%}.")
         if lowest <= registered.SURE:
-            self.report({"WARNING"}, f"{name} is matched with a confidence of {lowest:.0%} only; look at its parts.")
+            tell(self, "WARNING", f"{name} is matched with a confidence of {lowest:.0%} only; look at its parts.")
 
 
 def _write(

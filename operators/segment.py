@@ -6,6 +6,7 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty
 from . import engine, results, state
 from .properties import MODE_ITEMS
 from .refusals import can_use_active_mesh, refusals_told
+from .sentences import tell
 from .viewport import show_vertex_colours
 
 # What a division can go by, and the property that says how far.
@@ -67,7 +68,7 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
             labels = results.segment_mesh(mesh, mode=mode, **{name: getattr(self, name) for name in given})
             show_vertex_colours(context)
             for warning in labels.warnings:
-                self.report({"WARNING"}, warning)
+                tell(self, "WARNING", warning)
             self._fill_in(mesh, labels, given)
             return {"FINISHED"}
         return {"CANCELLED"}

@@ -14,6 +14,7 @@ from .analyze import Ticket, find_mesh
 from .refusals import Refusal
 from .results import read_labels
 from .rollback import all_or_nothing, bound_or_not, nothing_left_behind
+from .sentences import tell
 from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 
@@ -116,7 +117,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
             bone_layout.remember(mesh, laid.skeleton.layout)
             self.build(context, obj, laid)
         for warning in (*laid.skeleton.warnings, *_warnings_of_reference(mesh)):
-            self.report({"WARNING"}, warning)
+            tell(self, "WARNING", warning)
         return {"FINISHED"}
 
 

@@ -10,6 +10,7 @@ from bpy.props import FloatProperty, IntProperty
 from .fresh_analysis import FreshAnalysis
 from .palette import COMPLEX_COLOURS
 from .palette import COMPLEX_ROLE as ROLE
+from .sentences import tell
 
 # The object whose complex a collection holds.
 OF_OBJECT = "eigenparts_complex"
@@ -56,7 +57,7 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
             dots = add_object(collection, owner, role, dots_of(role, places, DOT_RADIUS * size))
             dots["places"] = places.ravel().tolist()
         n_dots = sum(len(places) for places in found.dots.values())
-        self.report({"INFO"}, f'{n_dots} critical points are in the collection "{collection.name}".')
+        tell(self, "INFO", f'{n_dots} critical points are in the collection "{collection.name}".')
         return {"FINISHED"}
 
 

@@ -4,6 +4,7 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ..operators import state
+from ..operators.sentences import in_language
 
 # What is said where there is nothing to show yet.
 NO_MESH = "Select a mesh object first."
@@ -76,7 +77,7 @@ def draw_hint(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
     n_letters = max(20, int(width / (7 * (bpy.context.preferences.system.ui_scale or 1))))
     column = layout.column(align=True)
     line = ""
-    for word in translated(sentence).split():
+    for word in in_language(sentence, translated).split():
         if len(line) + len(word) >= n_letters:
             column.label(text=line, translate=False)
             line = ""

@@ -2,10 +2,12 @@
 
 import bpy
 
+from ...operators import sentences
 from .german import GERMAN
+from .german_sentences import GERMAN_SENTENCES
 
 # By Blender's name of the language.
-LANGUAGES = {"de_DE": GERMAN}
+LANGUAGES = {"de_DE": GERMAN | GERMAN_SENTENCES}
 # Blender looks for the labels of operators in a context of their own.
 CONTEXTS = (bpy.app.translations.contexts.default, bpy.app.translations.contexts.operator_default)
 
@@ -17,8 +19,10 @@ def register() -> None:
         for language, table in LANGUAGES.items()
     }
     bpy.app.translations.register(__package__, tables)
+    sentences.use_tables(LANGUAGES.values())
 
 
 def unregister() -> None:
     """Take them back."""
+    sentences.use_tables(())
     bpy.app.translations.unregister(__package__)
