@@ -9,6 +9,8 @@ from .formats import FORMATS
 EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
 # Materials are not among them: they are no numbers that could go from file to file.
 LAYERS = ("groups", "shape_keys", "uvs", "colors", "attributes", "faces", "parts")
+# Seconds of the longest time limit: a week.
+LONGEST = 604_800
 FILE_KINDS = f"Formats: {' '.join(FORMATS)}."
 
 
@@ -20,6 +22,8 @@ def parse(argv: list[str]) -> argparse.Namespace:
     for add in (_add_segment, _add_register, _add_transfer, _add_batch):
         add(commands)
     options = parser.parse_args(argv)
+    if options.timeout and not (options.jobs or options.scheduler):
+        parser.error("--timeout ends processes, so it needs --jobs or --scheduler")
     if options.command in ("register", "transfer") and options.source is None:
         options.source = options.files[0]
     return options
@@ -139,6 +143,12 @@ def _add_execution(command: argparse.ArgumentParser) -> None:
     crew.add_argument("--jobs", metavar="N", type=_positive, help="do the files in N processes")
     crew.add_argument("--scheduler", metavar="ADDRESS", help="do the files on a dask cluster, such as tcp://host:8786")
     command.add_argument(
+        "--timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        help="a file that takes longer has failed; with --jobs or --scheduler, each file then has a process of its own",
+    )
+    command.add_argument(
         "--worker-command",
         metavar="COMMAND",
         type=shlex.split,
@@ -151,6 +161,13 @@ def _layers(text: str) -> list[str]:
     if not set(kinds) <= set(LAYERS):
         raise argparse.ArgumentTypeError(f"must be some of {', '.join(LAYERS)}")
     return kinds
+
+
+def _seconds(text: str) -> float:
+    seconds = float(text)
+    if not 0 < seconds <= LONGEST:
+        raise argparse.ArgumentTypeError(f"must be more than 0 and at most {LONGEST}")
+    return seconds
 
 
 def _positive(text: str) -> int:

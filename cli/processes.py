@@ -79,6 +79,8 @@ class Crew:
     n_processes : int
     environment : dict, optional
         Of the processes; the one that they find if None.
+    timeout : float, optional
+        Seconds that a process has, which then does one file only.
     """
 
     executor: Executor
@@ -86,11 +88,12 @@ class Crew:
     arguments: list[str]
     n_processes: int
     environment: dict[str, str] | None = None
+    timeout: float | None = None
     _under_way: dict["Future[subprocess.CompletedProcess[str]]", Unit] = field(default_factory=dict)
 
     def work(self, jobs: Sequence[Job]) -> Iterator[Report]:
         """Yield a report for each file as soon as its process has ended."""
-        for unit in _units(jobs, self.n_processes):
+        for unit in _units(jobs, _most_files(len(jobs), self.n_processes) if self.timeout is None else 1):
             self._submit(unit)
         try:
             while self._under_way:
@@ -113,12 +116,18 @@ class Crew:
             encoding="utf-8",
             errors="replace",
             env=self.environment,
+            timeout=self.timeout,
         )
         self._under_way[self.executor.submit(call)] = unit
 
     def _harvest(self, unit: Unit, future: "Future[subprocess.CompletedProcess[str]]") -> Iterator[Report]:
         try:
             process = future.result()
+        except subprocess.TimeoutExpired:
+            # It was killed, and a second try would take as long.
+            _clear_up(unit.jobs[0])
+            yield failed(unit.jobs[0], f"it took longer than {self.timeout:g} seconds.")
+            return
         except (Exception, CancelledError) as error:
             # The process could not be started, or the machine is gone.
             yield from self._try_again(unit, f"{type(error).__name__}: {error}")
@@ -132,8 +141,7 @@ class Crew:
     def _try_again(self, unit: Unit, problem: str) -> Iterator[Report]:
         """Give the file at which a process ended a second chance, alone, and the others behind it a new process."""
         first, *others = unit.jobs
-        discard(first.target)
-        discard(path_beside(first.target))
+        _clear_up(first)
         if unit.was_tried:
             yield failed(first, f"its process ended twice before the file was done: {problem}")
         else:
@@ -148,7 +156,7 @@ def local_crew(options: argparse.Namespace) -> Iterator[Crew]:
     share = str(max(1, (os.cpu_count() or 1) // options.jobs))
     environment = {**dict.fromkeys(THREAD_SETTINGS, share), **os.environ}
     with ThreadPoolExecutor(options.jobs) as executor:
-        yield Crew(executor, own_command(), _arguments_of(options), options.jobs, environment)
+        yield Crew(executor, own_command(), _arguments_of(options), options.jobs, environment, options.timeout)
 
 
 @contextmanager
@@ -163,7 +171,8 @@ def cluster_crew(options: argparse.Namespace) -> Iterator[Crew]:
     except (OSError, ValueError) as error:
         raise Refusal(f"no dask scheduler answers at {options.scheduler}.") from error
     with client, client.get_executor() as executor:
-        yield Crew(executor, options.worker_command or own_command(), _arguments_of(options), CLUSTER)
+        command = options.worker_command or own_command()
+        yield Crew(executor, command, _arguments_of(options), CLUSTER, timeout=options.timeout)
 
 
 def _arguments_of(options: argparse.Namespace) -> list[str]:
@@ -184,11 +193,21 @@ def own_command() -> list[str]:
     return [sys.executable, "-P", str(Path(__file__).with_name("launch.py")), str(folder_of_scipy)]
 
 
-def _units(jobs: Sequence[Job], n_processes: int) -> Iterator[Unit]:
-    size = max(1, min(MOST_FILES, int(len(jobs) * SHARE / n_processes)))
+def _most_files(n_jobs: int, n_processes: int) -> int:
+    """Return how many files a process does, so that all have enough to do."""
+    return max(1, min(MOST_FILES, int(n_jobs * SHARE / n_processes)))
+
+
+def _units(jobs: Sequence[Job], size: int) -> Iterator[Unit]:
     for _, group in groupby(jobs, key=lambda job: job.target.parent):
         same_folder = tuple(group)
         yield from (Unit(same_folder[start : start + size]) for start in range(0, len(same_folder), size))
+
+
+def _clear_up(job: Job) -> None:
+    """Remove what a process left that ended while it wrote a result."""
+    discard(job.target)
+    discard(path_beside(job.target))
 
 
 def _reports_in(text: str) -> list[Report]:

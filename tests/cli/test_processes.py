@@ -13,15 +13,20 @@ import pytest
 from tests.cli.files import write_off
 from tests.shapes import star
 
+# Seconds that are enough for a small star on a machine that is busy.
+TIME_LIMIT = 40
 LAUNCHER = Path(__file__).parents[2] / "cli" / "launch.py"
 # Stands in for the command line: does each file at once, but one of these makes its process end without a word.
 STAND_IN = """
-import json, os, pathlib, signal, sys
+import json, os, pathlib, signal, sys, time
 for file in sys.argv[sys.argv.index("--") + 1:]:
     once = pathlib.Path(file + ".once")
     if "deadly" in file or "unlucky" in file and not once.exists():
         once.touch()
         os.kill(os.getpid(), signal.SIGKILL)
+    if "endless" in file:
+        pathlib.Path(file).with_name(".eigenparts-" + pathlib.Path(file).stem + "_parts.off").mkdir()
+        time.sleep(600)
     print("Blender says something")
     print(json.dumps({"version": 1, "file": file, "error": "done by the stand-in.", "seconds": 0.0}), flush=True)
 """
@@ -98,6 +103,26 @@ def test_a_file_that_kills_its_process_takes_no_other_with_it(run, stand_in, tmp
     assert all("done by the stand-in" in told[name] for name in names if not name.startswith("deadly"))
 
 
+def test_a_file_that_takes_too_long_has_failed_and_the_others_go_on(run, stand_in, tmp_path):
+    names = ["deadly.off", "endless1.off", "endless2.off", *(f"good{number}.off" for number in range(6))]
+    for name in names:
+        (tmp_path / name).touch()
+    code, _, errors = run("batch", tmp_path, "--jobs", 3, "--timeout", 8)
+    told = dict(line.removeprefix(f"{tmp_path}/").split(": ", 1) for line in errors if ".off: " in line)
+    assert (code, sorted(told)) == (1, names)
+    assert told["endless1.off"] == told["endless2.off"] == "it took longer than 8 seconds."
+    assert "ended twice" in told["deadly.off"]
+    assert all("done by the stand-in" in told[name] for name in names[3:])
+    assert not list(tmp_path.glob(".eigenparts-*"))
+
+
+def test_a_time_limit_needs_processes(run, star_off):
+    code, _, errors = run("segment", star_off, "--timeout", 5)
+    assert code == 2
+    assert "needs --jobs or --scheduler" in errors[-1]
+    assert run("segment", star_off, "--jobs", 1, "--timeout", 0)[0] == 2
+
+
 def test_a_command_that_is_not_there_fails_every_file(run, folder, monkeypatch):
     run("--help")
     from eigenparts.cli import processes
@@ -117,6 +142,19 @@ def test_a_worker_killed_in_the_middle_costs_nothing(command_line, folder):
     assert out.count(", written to ") == 6
     assert len(texts_of(folder)) == 6
     assert not list(folder.rglob(".eigenparts-*"))
+
+
+def test_a_worker_that_hangs_is_ended_and_the_others_go_on(command_line, folder):
+    """A real one, stopped by the system, so that it never ends by itself."""
+    batch = command_line("batch", folder, "--jobs", 2, "--timeout", TIME_LIMIT)
+    victims = wait_for(lambda: psutil.Process(batch.pid).children())
+    victims[0].suspend()
+    out, err = batch.communicate(timeout=10 * TIME_LIMIT)
+    assert batch.returncode == 1
+    assert err.count(f"it took longer than {TIME_LIMIT} seconds.") == 1, err
+    assert out.count(", written to ") == len(texts_of(folder)) == 5
+    assert not list(folder.rglob(".eigenparts-*"))
+    assert not victims[0].is_running()
 
 
 def test_a_batch_killed_in_the_middle_is_resumed(command_line, folder, tmp_path):
