@@ -33,6 +33,7 @@ register, unregister = bpy.utils.register_submodule_factory(
         "flip_function",
         "next_alternative",
         "transfer",
+        "add_transfer_preset",
         "skeleton_options",
         "create_armature",
         "create_skeleton_curves",

@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "cli": {"compute", "operators"},
     "ui": {
         *("operators.state", "operators.palette", "operators.registered", "operators.faults"),
-        *("operators.border_lines", "operators.part_outline", "operators.function_hints"),
+        *("operators.border_lines", "operators.part_outline", "operators.function_hints", "operators.sentences"),
     },
 }
 OUTSIDE = {

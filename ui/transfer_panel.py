@@ -3,12 +3,16 @@
 import bpy
 
 from .tab import EigenpartsPanel, draw_direction, main_row, other_meshes
+from .transfer_presets import EIGENPARTS_PT_transfer_presets
 
 
 class EIGENPARTS_PT_transfer(EigenpartsPanel, bpy.types.Panel):
     bl_label = "Transfer"
     bl_order = 40
     bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        EIGENPARTS_PT_transfer_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout

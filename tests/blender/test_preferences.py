@@ -9,7 +9,9 @@ import pytest
 
 from tests.blender.conftest import values_of
 
-PRESETS = sorted((Path(__file__).parents[2] / "presets" / "eigenparts" / "analysis").glob("*.py"))
+PRESETS = Path(__file__).parents[2] / "presets" / "eigenparts"
+OF_ANALYSIS = sorted((PRESETS / "analysis").glob("*.py"))
+OF_TRANSFER = sorted((PRESETS / "transfer").glob("*.py"))
 
 
 @pytest.fixture
@@ -107,7 +109,7 @@ def test_threads_reach_the_library_of_scipy(extension):
     threads.use_threads(before)
 
 
-@pytest.mark.parametrize("path", PRESETS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", OF_ANALYSIS, ids=lambda path: path.stem)
 def test_a_preset_sets_every_option_but_the_name_of_an_attribute(extension, path):
     settings = bpy.context.scene.eigenparts
     given = {line.split(" = ")[0].removeprefix("settings.") for line in path.read_text().splitlines()[3:]}
@@ -115,6 +117,28 @@ def test_a_preset_sets_every_option_but_the_name_of_an_attribute(extension, path
     settings.order = "2"
     exec(compile(path.read_text(), path.name, "exec"), {})
     assert settings.order != "2"
+
+
+@pytest.mark.parametrize("path", OF_TRANSFER, ids=lambda path: path.stem)
+def test_a_preset_sets_every_option_of_transferring(extension, path):
+    options = set(extension.operators.transfer.TransferOptions.__annotations__)
+    settings = bpy.context.scene.eigenparts_transfer
+    given = {line.split(" = ")[0].removeprefix("settings.") for line in path.read_text().splitlines()[3:]}
+    assert given == options
+    settings.layers, settings.factor = {"PARTS"}, 0.5
+    exec(compile(path.read_text(), path.name, "exec"), {})
+    assert (settings.factor, "PARTS" in settings.layers) == (1, False)
+
+
+def test_a_preset_of_ones_own_brings_back_what_was_set(extension, tmp_path, monkeypatch):
+    monkeypatch.setattr(bpy.utils, "user_resource", lambda kind, *, path, create: str(tmp_path))
+    settings = bpy.context.scene.eigenparts_transfer
+    settings.layers, settings.mask, settings.mirrored = {"UVS", "COLORS"}, "face", True
+    bpy.ops.eigenparts.add_transfer_preset(name="Mine")
+    (kept,) = tmp_path.rglob("*.py")
+    settings.layers, settings.mask, settings.mirrored = {"GROUPS"}, "", False
+    exec(compile(kept.read_text(), kept.name, "exec"), {})
+    assert (settings.layers, settings.mask, settings.mirrored) == ({"UVS", "COLORS"}, "face", True)
 
 
 def test_every_entry_of_the_menu_is_an_action(extension):

@@ -19,7 +19,7 @@ HEAVY = {
     # Ends when the user is done with clicking; there is no ray to be changed then.
     "pick_part",
 }
-INTERNAL = {"cancel", "reset_colors", "add_analysis_preset"}
+INTERNAL = {"cancel", "reset_colors", "add_analysis_preset", "add_transfer_preset"}
 # Changes nothing, so there is nothing to undo or to do again.
 TELLING = {"copy_report"}
 

@@ -131,6 +131,9 @@ GERMAN: dict[str, str] = {
     "Remove all that Eigenparts left on the active mesh: analysis, parts and what shows them; what is yours stays": "Alles vom aktiven Netz entfernen, was Eigenparts dort ließ: die Analyse, die Teile und was sie zeigt; das Eigene bleibt",
     "Copy Bug Report": "Fehlerbericht kopieren",
     "Copy what a bug report needs: versions, numbers about the active mesh, messages and the last error; no paths": "Kopieren, was ein Fehlerbericht braucht: Versionen, Zahlen zum aktiven Netz, Meldungen und den letzten Fehler; keine Pfade",
+    "Transfer Presets": "Vorgaben des Übertragens",
+    "Add Transfer Preset": "Vorgabe des Übertragens hinzufügen",
+    "Keep what is transferred, and how, under a name, or remove the preset": "Was übertragen wird und wie unter einem Namen behalten, oder die Vorgabe entfernen",
     "Add Analysis Preset": "Vorgabe der Analyse hinzufügen",
     "Keep these options under a name, or remove the preset": "Diese Optionen unter einem Namen behalten, oder die Vorgabe entfernen",
     "Select Part": "Teil auswählen",
@@ -286,7 +289,7 @@ GERMAN: dict[str, str] = {
     "Build an armature for the parts of the active mesh and bind the mesh to it; other selected meshes with the same faces show where its limbs bend": "Eine Armatur für die Teile des aktiven Netzes bauen und das Netz daran binden; andere ausgewählte Netze mit gleichen Flächen zeigen, wo sich seine Glieder beugen",
     "Register the object again with the other sign of this function, whatever fits better; Write Eigenfunctions makes attributes of these functions": "Das Objekt noch einmal registrieren, mit dem anderen Vorzeichen dieser Funktion, was auch besser passt; „Eigenfunktionen schreiben“ macht Attribute aus diesen Funktionen",
     # From one mesh to others.
-    "Select the others, this one last": "Die anderen auswählen, dieses zuletzt",
+    "Select meshes, the source last": "Netze auswählen, die Quelle zuletzt",
     "{source} to {target}": "{source} an {target}",
     "{source} to {count} others": "{source} an {count} andere",
     "{number} of {all}": "{number} von {all}",
