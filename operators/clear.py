@@ -3,6 +3,7 @@
 import bpy
 
 from . import exchange, outputs, state
+from .ownership import mend
 from .refusals import can_use_active_mesh
 from .rollback import all_or_nothing
 from .viewport import restore_colour_types
@@ -21,6 +22,7 @@ class EIGENPARTS_OT_clear(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.object.data
+        mend(mesh)
         with all_or_nothing(mesh):
             outputs.remove(mesh)
             exchange.remove_own_attributes(mesh, exchange.own_names(mesh))

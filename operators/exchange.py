@@ -3,6 +3,7 @@
 Attributes we write are marked in a property of the mesh, so that nothing of the user's is ever overwritten or removed.
 """
 
+import re
 from dataclasses import dataclass
 from hashlib import blake2b
 
@@ -13,6 +14,8 @@ from .refusals import IN_EDIT_MODE, Refusal
 
 # Names of the attributes that are ours, one a line.
 OWN_ATTRIBUTES = "eigenparts_attributes"
+# Names that ours may have: nothing else is ever taken for ours, whatever the list says.
+OWN_NAME = re.compile(r"\.?eigenparts_\w+|eigenfunction_\d+|part|part_vertex|part_color|\.sculpt_face_set")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +48,11 @@ class OwnAttribute:
     def is_kind_of(self, attribute: bpy.types.Attribute) -> bool:
         """Whether an attribute has this type and domain."""
         return (attribute.data_type, attribute.domain) == (self.data_type, self.domain)
+
+    def is_on(self, mesh: bpy.types.Mesh) -> bool:
+        """Whether a mesh has an attribute of this name, type and domain."""
+        attribute = mesh.attributes.get(self.name)
+        return attribute is not None and self.is_kind_of(attribute)
 
 
 def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
@@ -144,7 +152,7 @@ def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: np.ndarray)
     refuse_foreign(mesh, (own,))
     if own.name not in mesh.attributes:
         mesh.attributes.new(own.name, type=own.data_type, domain=own.domain)
-        _set_own_names(mesh, [*own_names(mesh), own.name])
+        mark_own(mesh, [own.name])
     mesh.attributes[own.name].data.foreach_set(own.property_name, np.ascontiguousarray(values).ravel())
 
 
@@ -179,7 +187,12 @@ def remove_own_attributes(mesh: bpy.types.Mesh, names: list[str]) -> None:
 def own_names(mesh: bpy.types.Mesh) -> list[str]:
     """Return the names of the attributes that are marked as ours."""
     marked = mesh.get(OWN_ATTRIBUTES, "")
-    return marked.splitlines() if isinstance(marked, str) else []
+    return [name for name in marked.splitlines() if OWN_NAME.fullmatch(name)] if isinstance(marked, str) else []
+
+
+def mark_own(mesh: bpy.types.Mesh, names: list[str]) -> None:
+    """Mark attributes as ours."""
+    _set_own_names(mesh, [*own_names(mesh), *names])
 
 
 def _set_own_names(mesh: bpy.types.Mesh, names: list[str]) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 from . import correcting, corrections, engine, outputs, part_table, registered, state
 from .division import PART
 from .exchange import read_own_integers, refuse_foreign, write_attribute
+from .ownership import mend
 from .refusals import Refusal
 from .rollback import all_or_nothing
 from .soundness import lie_within
@@ -100,6 +101,7 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
     softness : float, optional
         Width over which vertex groups are softened, in the mesh's unit; as before if None.
     """
+    mend(mesh)
     state.summarize(mesh)
     names = set(outputs.chosen(mesh)) if names is None else names
     refuse_foreign(mesh, outputs.own_attributes(names))
@@ -118,6 +120,7 @@ def recolour(mesh: bpy.types.Mesh) -> None:
 
 def refuse_foreign_results(mesh: bpy.types.Mesh) -> None:
     """Raise a Refusal if something of the user's stands where a result belongs."""
+    mend(mesh)
     refuse_foreign(mesh, (PART, *state.ATTRIBUTES, *outputs.own_attributes(outputs.chosen(mesh))))
 
 

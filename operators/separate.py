@@ -6,9 +6,11 @@ import numpy as np
 
 from . import part_table, state
 from .exchange import remove_own_attributes
+from .ownership import mend
 from .refusals import Refusal, can_use_active_mesh, refusals_told
 from .results import read_labels
 from .rollback import nothing_left_behind
+from .sentences import tell
 
 
 class EIGENPARTS_OT_separate(bpy.types.Operator):
@@ -27,7 +29,7 @@ class EIGENPARTS_OT_separate(bpy.types.Operator):
             pieces = separate_parts(context.object)
             for piece in pieces:
                 piece.select_set(True)
-            self.report({"INFO"}, f"{len(pieces)} objects.")
+            tell(self, "INFO", f"{len(pieces)} objects.")
             return {"FINISHED"}
         return {"CANCELLED"}
 
@@ -39,6 +41,7 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
     refers to it still does. The pieces keep the outputs that were chosen, and forget the analysis: it was of the whole.
     """
     mesh = obj.data
+    mend(mesh)
     labels = read_labels(mesh)
     parts = np.unique(labels).tolist()
     if len(parts) < 2:

@@ -198,7 +198,7 @@ def test_a_change_that_fails_anywhere_leaves_everything_as_it_was(full, monkeypa
             assert all_of(full.data) == before, (writer, n)
             assert blocks() == names
             n_failed += 1
-    assert n_failed > 4
+    assert n_failed > 2
     draw_panels()
 
 

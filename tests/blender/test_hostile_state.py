@@ -236,13 +236,58 @@ def test_a_new_analysis_heals_any_damage(divided, tracebacks):
     def check(one):
         mesh = take_a_copy(divided, template)
         hurt(mesh, *one)
-        if one[0] == ("eigenparts_attributes",):
-            # Attributes that are not known to be ours are the user's, and stay.
-            return
         bpy.ops.eigenparts.analyze(order="1")
         assert bpy.ops.eigenparts.segment(level=2) == {"FINISHED"}
 
     check()
+
+
+LISTS = {
+    "gone": None,
+    "no text": 7,
+    "empty": "",
+    "others": "heat\nposition\nUVMap",
+    "cut short": "eigenparts_branch\n.eigenparts_arc\npar",
+}
+
+
+@pytest.mark.parametrize("listed", LISTS)
+@pytest.mark.parametrize(
+    ("operator", "options"),
+    [
+        ("analyze", {"order": "1"}),
+        ("segment", {"level": 2}),
+        ("write_outputs", {"outputs": OUTPUTS}),
+        ("cut", {}),
+        ("merge_parts", {"part": 2, "into": 0}),
+    ],
+)
+def test_what_is_ours_is_known_again_without_the_list_of_it(corrected, listed, operator, options):
+    mesh = corrected.data
+    before = set(mesh["eigenparts_attributes"].split("\n"))
+    corrected.data.attributes.new("heat", "FLOAT", "POINT")
+    del mesh["eigenparts_attributes"]
+    if LISTS[listed] is not None:
+        mesh["eigenparts_attributes"] = LISTS[listed]
+    getattr(bpy.ops.eigenparts, operator)(**options)
+    assert set(own_attributes(mesh)) - {"heat", "position"} <= before
+    draw_panels()
+    bpy.ops.eigenparts.clear()
+    assert not [name for name in mesh.attributes.keys() if "eigenparts" in name or name.startswith("part")]  # noqa: SIM118
+    assert "heat" in mesh.attributes
+
+
+@pytest.mark.parametrize("name", ["part_color", ".sculpt_face_set"])
+def test_an_output_that_was_not_chosen_is_never_taken_for_ours(small_star, name):
+    obj = add_object(small_star.vertices, small_star.triangles)
+    bpy.ops.eigenparts.analyze(order="1")
+    bpy.ops.eigenparts.write_outputs(outputs={"VERTEX_ATTRIBUTE"})
+    kind = ("FLOAT_COLOR", "CORNER") if name == "part_color" else ("INT", "FACE")
+    obj.data.attributes.new(name, *kind)
+    del obj.data["eigenparts_attributes"]
+    bpy.ops.eigenparts.segment(level=1)
+    bpy.ops.eigenparts.clear()
+    assert name in obj.data.attributes
 
 
 def test_a_part_attribute_with_absurd_labels_is_refused(divided):
