@@ -52,7 +52,7 @@ def draw_direction(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
     """Say from which mesh to how many others something goes."""
     source, others = context.object, other_meshes(context)
     if not others or active_mesh(context) is None:
-        layout.label(text="Select the others, this one last", icon="INFO")
+        layout.label(text="Select meshes, the source last", icon="INFO")
         return
     text = translated("{source} to {target}") if len(others) == 1 else translated("{source} to {count} others")
     layout.label(text=text.format(source=source.name, target=others[0].name, count=len(others)), translate=False)
