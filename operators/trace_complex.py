@@ -10,6 +10,7 @@ from bpy.props import FloatProperty, IntProperty
 from .fresh_analysis import FreshAnalysis
 from .palette import COMPLEX_COLOURS
 from .palette import COMPLEX_ROLE as ROLE
+from .rollback import nothing_left_behind
 from .sentences import tell
 
 # The object whose complex a collection holds.
@@ -50,12 +51,15 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
         found = traced_complex(analysis, None if self.level < 0 else self.level)
         owner = context.scene.objects[name]
         size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
-        collection = empty_collection(context, name)
-        for role, lines in found.lines.items():
-            add_object(collection, owner, role, curve_of(role, lines, LINE_RADIUS * size))
-        for role, places in found.dots.items():
-            dots = add_object(collection, owner, role, dots_of(role, places, DOT_RADIUS * size))
-            dots["places"] = places.ravel().tolist()
+        with nothing_left_behind(context):
+            lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in found.lines.items()}
+            dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in found.dots.items()}
+            # What is there from before goes only when there is something to take its place.
+            collection = empty_collection(context, name)
+            for role, data in {**lines, **dots}.items():
+                obj = add_object(collection, owner, role, data)
+                if role in dots:
+                    obj["places"] = found.dots[role].ravel().tolist()
         n_dots = sum(len(places) for places in found.dots.values())
         tell(self, "INFO", f'{n_dots} critical points are in the collection "{collection.name}".')
         return {"FINISHED"}
