@@ -4,8 +4,10 @@ ENVIRONMENT ?= .venv
 RUN = $(ENVIRONMENT)/bin/python
 MESH ?=
 OUTPUT ?= demo
+DATA ?=
+NAMES ?=
 
-.PHONY: help environment demo test lint package test-matrix test-window clean
+.PHONY: help environment demo pictures bench test lint package test-matrix test-window clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1  /p' $(MAKEFILE_LIST)
@@ -15,6 +17,12 @@ environment:
 
 demo: environment  ## segment the example character, or MESH=path, into pictures, a .blend and a report in demo/
 	@$(RUN) tools/demo.py $(if $(MESH),--mesh "$(MESH)") --output "$(OUTPUT)"
+
+pictures: environment  ## the pictures of the documentation, or NAMES="levels.gif way.png"; DATA=folder for those of other meshes
+	@OPENBLAS_NUM_THREADS=1 $(RUN) -m tools.pictures $(if $(DATA),--data "$(DATA)") $(NAMES)
+
+bench: environment  ## quick benchmarks, or NAMES="topology slider"; DATA=folder for all of them in full; tables in demo/bench/
+	@$(RUN) tools/bench.py $(if $(DATA),--data "$(DATA)") $(NAMES)
 
 test: environment  ## engine tests and Blender tests
 	@OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest -q --numprocesses auto

@@ -1,6 +1,7 @@
 """Pictures of divided meshes: flat part colours in soft light on a plain ground, by Cycles on the processor."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import radians, tan
 from pathlib import Path
@@ -15,9 +16,21 @@ BACKGROUND = 0.955
 FIELD_OF_VIEW = 20.0
 # How much of the picture's smaller side the object fills.
 FILLED = 0.86
+# Shadows fade out over this fraction of each side, so that pictures can lie side by side without a seam.
+FADED = 0.2
+# What hides more than this is no shadow, and what hides less than that no object.
+OBJECT, SHADOW = 0.95, 0.6
+# How much of what lies in front shows, so that the body is still seen behind it.
+OPACITY = 0.88
+# Materials whose names begin like this are shown as they are; all others are replaced.
+MATERIAL = "eigenparts picture"
+# The grey that light is found on, and rays a pixel for colours that shine by themselves.
+CLAY, GLOW_SAMPLES = 0.45, 16
+# Hidden less than this, the ground counts as lit: what the denoiser leaves.
+LIT = 0.015
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class View:
     """From where a picture is taken.
 
@@ -29,6 +42,8 @@ class View:
         Pixels.
     samples : int
         Rays a pixel.
+    framed : (N, 3) float32, optional
+        The points that fill the picture; those of the objects if None.
     """
 
     azimuth: float = 24.0
@@ -36,23 +51,62 @@ class View:
     width: int = 600
     height: int = 750
     samples: int = 12
+    framed: np.ndarray | None = None
 
 
-def render(objects: Sequence[bpy.types.Object], path: Path, view: View | None = None) -> Path:
-    """Write a PNG of some objects in the colours of their parts, and leave the file that is open as it was."""
+def render(
+    objects: Sequence[bpy.types.Object],
+    path: Path,
+    view: View | None = None,
+    in_front: Sequence[bpy.types.Object] = (),
+) -> Path:
+    """Write a PNG of some objects in the colours of their parts, and leave the file that is open as it was.
+
+    What has no parts has its object's colour. What is in front is seen through the objects, as bones are.
+    """
     view = view or View()
+    bodies, bones = ([_posed_copy(obj) for obj in group] for group in (objects, in_front))
+    with _stage(bodies, view) as (scene, ground):
+        for bone in bones:
+            scene.collection.objects.link(bone)
+        pixels = _over(_faded(_taken(scene, path, hidden=bones)), BACKGROUND)
+        if bones:
+            before = _taken(scene, path, hidden=[*bodies, ground])
+            before[..., 3] *= OPACITY
+            pixels = _over(before, pixels)
+    _save(pixels, path)
+    return path
+
+
+def light(objects: Sequence[bpy.types.Object], path: Path, view: View) -> np.ndarray:
+    """Return (height, width, 4) light on some objects and their shadow, whatever their colours; a file is written."""
+    with _stage([_posed_copy(obj, _material("", CLAY)) for obj in objects], view) as (scene, _):
+        return _taken(scene, path, hidden=[])
+
+
+def paint_light(lit: np.ndarray, objects: Sequence[bpy.types.Object], path: Path, view: View) -> Path:
+    """Write a PNG of objects in the light that was found before: much faster, and it never flickers."""
+    with _stage([_posed_copy(obj, _glowing("part_color")) for obj in objects], view) as (scene, ground):
+        scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.max_bounces = GLOW_SAMPLES, False, 0
+        colours = _taken(scene, path, hidden=[ground])
+    shown, is_object = lit.copy(), colours[..., 3] > 0
+    reflected = _linear(lit[is_object, :3]) / CLAY * _linear(colours[is_object, :3])
+    shown[is_object, :3] = _as_on_screen(np.minimum(reflected, 1))
+    _save(_over(_faded(shown), BACKGROUND), path)
+    return path
+
+
+@contextmanager
+def _stage(copies: Sequence[bpy.types.Object], view: View) -> Iterator[tuple[bpy.types.Scene, bpy.types.Object]]:
+    """Put objects into a scene of their own with camera, light and ground; all of it is gone afterwards."""
     scene = bpy.data.scenes.new("eigenparts picture")
     try:
-        for obj in objects:
-            scene.collection.objects.link(_posed_copy(obj))
+        for copy in copies:
+            scene.collection.objects.link(copy)
         _set_up(scene, view)
-        _aim(scene, view)
-        scene.render.filepath = str(path)
-        bpy.ops.render.render(write_still=True, scene=scene.name)
+        yield scene, _aim(scene, view, np.concatenate([world_positions(copy) for copy in copies]))
     finally:
         _take_down(scene)
-    _lay_on_background(path)
-    return path
 
 
 def side_by_side(paths: Sequence[Path], target: Path) -> Path:
@@ -61,31 +115,67 @@ def side_by_side(paths: Sequence[Path], target: Path) -> Path:
     return target
 
 
-def _posed_copy(obj: bpy.types.Object) -> bpy.types.Object:
-    """Return an object with the evaluated mesh and nothing but our material."""
+def world_positions(obj: bpy.types.Object) -> np.ndarray:
+    """Return the (V, 3) float32 vertices of an object in the space of the scene."""
+    positions = np.empty(3 * len(obj.data.vertices), dtype=np.float32)
+    obj.data.attributes["position"].data.foreach_get("vector", positions)
+    matrix = np.array(obj.matrix_world, dtype=np.float32)
+    return positions.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _posed_copy(obj: bpy.types.Object, material: bpy.types.Material | None = None) -> bpy.types.Object:
+    """Return an object with the evaluated mesh and nothing but one material; ours that suits it if none is given."""
     evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = bpy.data.meshes.new_from_object(evaluated)
+    own = [material for material in mesh.materials if material and material.name.startswith(MATERIAL)]
     mesh.materials.clear()
-    mesh.materials.append(_part_material())
+    suiting = own[0] if own else _material("part_color" if "part_color" in mesh.attributes else "")
+    mesh.materials.append(material or suiting)
     copy = bpy.data.objects.new("picture", mesh)
     copy.matrix_world = obj.matrix_world
+    copy.color = obj.color
     return copy
 
 
-def _part_material() -> bpy.types.Material:
-    name = "eigenparts picture"
+def _material(attribute: str, grey: float | None = None) -> bpy.types.Material:
+    """Return a material in the colours of an attribute, or of the object if it has no name, or in a grey."""
+    name = f"{MATERIAL} {attribute} {grey}"
     if name in bpy.data.materials:
         return bpy.data.materials[name]
+    material, nodes = _nodes(name)
+    surface = nodes["Principled BSDF"]
+    surface.inputs["Roughness"].default_value = 0.55
+    surface.inputs["Specular IOR Level"].default_value = 0.25
+    if grey is not None:
+        surface.inputs["Base Color"].default_value = (grey, grey, grey, 1)
+        return material
+    colour = nodes.new("ShaderNodeVertexColor" if attribute else "ShaderNodeObjectInfo")
+    if attribute:
+        colour.layer_name = attribute
+    material.node_tree.links.new(colour.outputs["Color"], surface.inputs["Base Color"])
+    return material
+
+
+def _glowing(attribute: str) -> bpy.types.Material:
+    """Return a material that shines in the colours of an attribute, whatever the light."""
+    name = f"{MATERIAL} {attribute} glowing"
+    if name in bpy.data.materials:
+        return bpy.data.materials[name]
+    material, nodes = _nodes(name)
+    colour, shine = nodes.new("ShaderNodeVertexColor"), nodes.new("ShaderNodeEmission")
+    colour.layer_name = attribute
+    links = material.node_tree.links
+    links.new(colour.outputs["Color"], shine.inputs["Color"])
+    links.new(shine.outputs["Emission"], nodes["Material Output"].inputs["Surface"])
+    return material
+
+
+def _nodes(name: str) -> tuple[bpy.types.Material, bpy.types.Nodes]:
+    """Return a new material and its nodes."""
     material = bpy.data.materials.new(name)
     if material.node_tree is None:
         material.use_nodes = True
-    surface = material.node_tree.nodes["Principled BSDF"]
-    surface.inputs["Roughness"].default_value = 0.55
-    surface.inputs["Specular IOR Level"].default_value = 0.25
-    colour = material.node_tree.nodes.new("ShaderNodeVertexColor")
-    colour.layer_name = "part_color"
-    material.node_tree.links.new(colour.outputs["Color"], surface.inputs["Base Color"])
-    return material
+    return material, material.node_tree.nodes
 
 
 def _set_up(scene: bpy.types.Scene, view: View) -> None:
@@ -93,6 +183,7 @@ def _set_up(scene: bpy.types.Scene, view: View) -> None:
     scene.cycles.device = "CPU"
     scene.cycles.samples = view.samples
     scene.cycles.use_denoising = True
+    scene.cycles.denoising_prefilter = "FAST"
     scene.cycles.seed = 0
     scene.render.film_transparent = True
     scene.render.resolution_x, scene.render.resolution_y = view.width, view.height
@@ -107,9 +198,9 @@ def _set_up(scene: bpy.types.Scene, view: View) -> None:
     scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.6
 
 
-def _aim(scene: bpy.types.Scene, view: View) -> None:
-    """Add camera, light and ground to suit what is in the scene."""
-    corners = np.concatenate([_world_positions(obj) for obj in scene.collection.objects])
+def _aim(scene: bpy.types.Scene, view: View, positions: np.ndarray) -> bpy.types.Object:
+    """Add camera and light to suit what is shown, and the ground below the objects, which is returned."""
+    corners = positions if view.framed is None else view.framed
     centre = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2)
     size = float(np.linalg.norm(np.ptp(corners, axis=0)))
     turn = Matrix.Rotation(radians(view.azimuth), 4, "Z") @ Matrix.Rotation(radians(90 - view.elevation), 4, "X")
@@ -117,7 +208,7 @@ def _aim(scene: bpy.types.Scene, view: View) -> None:
     _add_light(
         scene, centre, size, turn @ Matrix.Rotation(radians(-50), 4, "X") @ Matrix.Rotation(radians(-25), 4, "Y")
     )
-    _add_ground(scene, centre, size, float(corners[:, 2].min()))
+    return _add_ground(scene, centre, size, float(positions[:, 2].min()))
 
 
 def _add_camera(scene: bpy.types.Scene, view: View, corners: np.ndarray, centre: Vector, turn: Matrix) -> None:
@@ -143,7 +234,7 @@ def _add_light(scene: bpy.types.Scene, centre: Vector, size: float, turn: Matrix
     scene.collection.objects.link(light)
 
 
-def _add_ground(scene: bpy.types.Scene, centre: Vector, size: float, height: float) -> None:
+def _add_ground(scene: bpy.types.Scene, centre: Vector, size: float, height: float) -> bpy.types.Object:
     """Add a ground that shows nothing but the shadow on it."""
     reach = 4 * size
     corners = [(centre.x + x * reach, centre.y + y * reach, height) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
@@ -152,13 +243,45 @@ def _add_ground(scene: bpy.types.Scene, centre: Vector, size: float, height: flo
     ground = bpy.data.objects.new("picture", mesh)
     ground.is_shadow_catcher = True
     scene.collection.objects.link(ground)
+    return ground
 
 
-def _world_positions(obj: bpy.types.Object) -> np.ndarray:
-    positions = np.empty(3 * len(obj.data.vertices), dtype=np.float32)
-    obj.data.attributes["position"].data.foreach_get("vector", positions)
-    matrix = np.array(obj.matrix_world)
-    return positions.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
+def _taken(scene: bpy.types.Scene, path: Path, hidden: Sequence[bpy.types.Object]) -> np.ndarray:
+    """Return what the camera sees, (height, width, 4), without some objects; a file is written on the way."""
+    for obj in scene.collection.objects:
+        obj.hide_render = obj in hidden
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True, scene=scene.name)
+    return _pixels(path)
+
+
+def _faded(pixels: np.ndarray) -> np.ndarray:
+    """Return a picture whose shadows pass into nothing at its sides."""
+    height, width, _ = pixels.shape
+    down, across = (
+        _smooth(np.minimum(place, 1 - place) / FADED)
+        for place in ((np.arange(n, dtype=np.float32) + 0.5) / n for n in (height, width))
+    )
+    shadow = 1 - _smooth((pixels[..., 3] - SHADOW) / (OBJECT - SHADOW))
+    faded = pixels.copy()
+    faded[..., 3] = np.maximum(faded[..., 3] - LIT, 0) / (1 - LIT) * (1 - shadow * (1 - down[:, None] * across))
+    return faded
+
+
+def _linear(colours: np.ndarray) -> np.ndarray:
+    """Return linear values of those of the screen."""
+    return np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+
+
+def _as_on_screen(values: np.ndarray) -> np.ndarray:
+    """Return values of the screen of linear ones."""
+    return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
+
+
+def _smooth(share: np.ndarray) -> np.ndarray:
+    """Return values that rise from 0 to 1 as the share does, without corners."""
+    share = np.clip(share, 0, 1)
+    return share * share * (3 - 2 * share)
 
 
 def _take_down(scene: bpy.types.Scene) -> None:
@@ -169,12 +292,12 @@ def _take_down(scene: bpy.types.Scene) -> None:
     bpy.data.batch_remove([*objects, *data, *([world] if world else [])])
 
 
-def _lay_on_background(path: Path) -> None:
-    pixels = _pixels(path)
-    alpha = pixels[..., 3:]
-    pixels[..., :3] = pixels[..., :3] * alpha + BACKGROUND * (1 - alpha)
-    pixels[..., 3] = 1
-    _save(pixels, path)
+def _over(pixels: np.ndarray, below: np.ndarray | float) -> np.ndarray:
+    """Return a picture laid over another one, or over a grey."""
+    laid = np.ones_like(pixels)
+    below = below[..., :3] if isinstance(below, np.ndarray) else below
+    laid[..., :3] = pixels[..., :3] * pixels[..., 3:] + below * (1 - pixels[..., 3:])
+    return laid
 
 
 def _pixels(path: Path) -> np.ndarray:

@@ -1,0 +1,123 @@
+"""Characters of the examples as objects: posed, analyzed by the operators that a user has, painted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from eigenparts.cli.quiet import blender_is_quiet as quiet
+from eigenparts.operators import palette, state
+from scipy.spatial import cKDTree
+
+from compute import TriangleMesh
+from examples import Bone, Character, Pose
+from examples.rig import bone_motions
+from examples.skinning import blend_skinning
+
+# Turns the hand so that its fingers point up and its palm along +x.
+FINGERS_UP = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+
+
+def add_mesh(name: str, vertices: np.ndarray, faces: np.ndarray) -> bpy.types.Object:
+    """Add a mesh to the current collection, shaded smooth, and return its object."""
+    data = bpy.data.meshes.new(name)
+    data.from_pydata(vertices.tolist(), [], faces.tolist())
+    data.shade_smooth()
+    obj = bpy.data.objects.new(name, data)
+    bpy.context.collection.objects.link(obj)
+    return obj
+
+
+@dataclass(frozen=True, eq=False)
+class Coarse:
+    """A character with few triangles.
+
+    Attributes
+    ----------
+    bones : tuple of B Bone
+    vertices : (V, 3) float64
+        At rest.
+    faces : (T, 3) int64
+    weights : (V, B) float64
+    """
+
+    bones: tuple[Bone, ...]
+    vertices: np.ndarray
+    faces: np.ndarray
+    weights: np.ndarray
+
+
+def coarsened(character: Character, share: float) -> Coarse:
+    """Return a character with a share of its triangles, decimated by Blender at rest."""
+    obj = add_mesh(character.name, character.vertices, character.quads)
+    obj.modifiers.new("Decimate", "DECIMATE").ratio = share
+    found = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    vertices = np.array([vertex.co for vertex in found.vertices])
+    faces = np.array([triangle.vertices for triangle in found.loop_triangles])
+    bpy.data.objects.remove(obj)
+    _, nearest = cKDTree(character.vertices).query(vertices)
+    return Coarse(character.bones, vertices, faces, character.weights[nearest])
+
+
+def standing(character: Character | Coarse, pose: Pose) -> np.ndarray:
+    """Return the vertices of a character in a pose, moved up or down so that it stands on the ground."""
+    vertices = blend_skinning(character.vertices, character.weights, bone_motions(character.bones, pose))
+    return vertices - [0, 0, vertices[:, 2].min()]
+
+
+def between(start: Pose, end: Pose, share: float) -> Pose:
+    """Return the pose that lies a share of the way from one pose to another."""
+    bones = start.angles.keys() | end.angles.keys()
+    still = (0.0, 0.0, 0.0)
+    angles = {bone: _mean(start.angles.get(bone, still), end.angles.get(bone, still), share) for bone in bones}
+    return Pose(angles, _mean(start.shift, end.shift, share))
+
+
+def analyze(obj: bpy.types.Object) -> None:
+    """Analyze an object; it shows its default level."""
+    select([obj])
+    with quiet():
+        bpy.ops.eigenparts.analyze()
+
+
+def segment(obj: bpy.types.Object, **choice: float) -> None:
+    """Divide an analyzed object anew."""
+    select([obj])
+    with quiet():
+        bpy.ops.eigenparts.segment(**choice)
+
+
+def level_of(obj: bpy.types.Object) -> tuple[int, int, int]:
+    """Return the level that an object shows, how many there are, and how many parts it shows."""
+    summary = state.summarize(obj.data)
+    return summary.level, summary.n_levels, len(summary.parts)
+
+
+def mesh_of(obj: bpy.types.Object) -> TriangleMesh:
+    """Return the mesh of an object that has only triangles."""
+    vertices = np.array([vertex.co for vertex in obj.data.vertices], dtype=float)
+    return TriangleMesh(vertices, np.array([face.vertices for face in obj.data.polygons]))
+
+
+def paint(obj: bpy.types.Object, colours: np.ndarray) -> None:
+    """Give an object colours, linear RGBA, one for each corner of its faces."""
+    layer = obj.data.color_attributes.new("part_color", "FLOAT_COLOR", "CORNER")
+    layer.data.foreach_set("color", colours.astype(np.float32).ravel())
+
+
+def paint_faces(obj: bpy.types.Object, labels: np.ndarray) -> None:
+    """Give the triangles of an object the colours of parts."""
+    paint(obj, palette.colours_of_labels(int(labels.max()) + 1)[labels].repeat(3, axis=0))
+
+
+def select(objects: Sequence[bpy.types.Object]) -> None:
+    """Select some objects and nothing else; the last is the active one."""
+    bpy.context.view_layer.update()
+    for obj in list(bpy.context.view_layer.objects):
+        obj.select_set(obj in objects)
+    bpy.context.view_layer.objects.active = objects[-1]
+
+
+def _mean(start: Sequence[float], end: Sequence[float], share: float) -> tuple[float, float, float]:
+    x, y, z = ((1 - share) * a + share * b for a, b in zip(start, end, strict=True))
+    return (x, y, z)

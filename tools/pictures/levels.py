@@ -1,0 +1,142 @@
+"""The level slider: a character whole, at every level, and with all its fingers, and one hand enlarged beside it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+from eigenparts.cli.quiet import blender_is_quiet as quiet
+from PIL import Image, ImageDraw
+
+from examples import Character, humanoid
+from tools.pictures.characters import add_mesh, analyze, level_of, segment, standing
+from tools.pictures.lettering import FINENESS, PALE_INK, PAPER, fine_lines, paper, write
+from tools.pictures.moving import Frame, write_gif
+from tools.pictures.shots import light_on, shot_in_light
+from tools.render import View
+
+POSE = "wave"
+N_VERTICES = 16000
+HAND = ("hand.L", "thumb.L", "index.L", "middle.L", "ring.L", "little.L")
+# Whatever stands out by a thousandth of the range, such as fingers.
+FINE = 1e-3
+WIDTH, HEIGHT = 720, 560
+BODY, BODY_PLACE = (520, 500), (-10, -8)
+# Of the enlarged hand: middle and radius.
+LENS, LENS_RADIUS = (548, 196), 138
+# Of the slider: left and right end, and height; what is passed and what is not.
+TRACK = (40, 680, 530)
+ACCENT, RAIL = (51, 153, 255), (205, 208, 212)
+# Frames from one level to the next, how long each is shown and how long a level, the first and the last rest.
+N_BETWEEN, STEP_TIME, REST_TIME, END_TIME = 3, 40, 520, 1900
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is shown at one level.
+
+    Attributes
+    ----------
+    level, n_parts : int
+    image : PIL.Image.Image
+        Without the slider.
+    """
+
+    level: int
+    n_parts: int
+    image: Image.Image
+
+
+def draw(target: Path) -> None:
+    """Write the moving picture."""
+    character = humanoid(N_VERTICES)
+    obj = add_mesh("Character", standing(character, character.poses[POSE]), character.quads)
+    analyze(obj)
+    segment(obj, threshold=FINE)
+    finest, _, _ = level_of(obj)
+    hand = _hand(character).astype(np.float32)
+    whole = View(azimuth=18, width=BODY[0], height=BODY[1], samples=48)
+    near = View(azimuth=18, width=2 * LENS_RADIUS, height=2 * LENS_RADIUS, samples=48, framed=hand)
+    lit = [(view, light_on([obj], view)) for view in (whole, near)]
+    write_gif(_frames([_step(obj, level, lit) for level in range(finest + 1)]), target)
+
+
+def _hand(character: Character) -> np.ndarray:
+    """Return the vertices of the hand that is enlarged."""
+    shown = [i for i, name in enumerate(character.fine_part_names) if name in HAND]
+    return standing(character, character.poses[POSE])[np.isin(character.fine_part_of_vertex, shown)]
+
+
+def _step(obj: bpy.types.Object, level: int, lit: Sequence[tuple[View, np.ndarray]]) -> Step:
+    cut = _cut(obj, level)
+    body, lens = (shot_in_light(light, [cut], view) for view, light in lit)
+    image = paper(WIDTH, HEIGHT)
+    image.paste(body, BODY_PLACE)
+    _lay_lens(image, lens)
+    return Step(level, level_of(cut)[2], image)
+
+
+def _cut(obj: bpy.types.Object, level: int) -> bpy.types.Object:
+    """Add a copy of an analyzed object in which the borders of a level run along edges."""
+    copy = obj.copy()
+    copy.data = obj.data.copy()
+    bpy.context.collection.objects.link(copy)
+    segment(copy, level=level)
+    with quiet():
+        bpy.ops.eigenparts.cut()
+    return copy
+
+
+def _lay_lens(image: Image.Image, lens: Image.Image) -> None:
+    """Lay a round picture with a fine rim over another."""
+    x, y = (middle - LENS_RADIUS for middle in LENS)
+    side = 2 * LENS_RADIUS
+    disc = Image.new("L", (FINENESS * side, FINENESS * side))
+    ImageDraw.Draw(disc).ellipse((0, 0, FINENESS * side - 1, FINENESS * side - 1), fill=255)
+    image.paste(lens, (x, y), disc.reduce(FINENESS))
+    with fine_lines(image, (x - 2, y - 2, x + side + 2, y + side + 2)) as lines:
+        edge = FINENESS * (side + 4) - 1
+        lines.ellipse((FINENESS, FINENESS, edge - FINENESS, edge - FINENESS), outline=PALE_INK, width=FINENESS + 2)
+
+
+def _frames(steps: Sequence[Step]) -> list[Frame]:
+    """Return all frames: up level by level, and back from the last to the first."""
+    frames = []
+    finest = steps[-1].level
+    for step, following in zip(steps, [*steps[1:], steps[0]], strict=True):
+        rests = END_TIME if step.level in (0, finest) else REST_TIME
+        frames.append(Frame(_with_slider(step, step.level, finest), rests))
+        n_between = N_BETWEEN if following.level else 2 * N_BETWEEN
+        for share in np.linspace(0, 1, n_between + 2)[1:-1]:
+            place = (1 - share) * step.level + share * following.level
+            frames.append(Frame(_with_slider(following if share > 0.5 else step, place, finest), STEP_TIME))
+    return frames
+
+
+def _with_slider(step: Step, place: float, finest: int) -> Image.Image:
+    """Return a picture with the slider below, its handle at a level or between two."""
+    drawn = step.image.copy()
+    left, right, height = TRACK
+    stops = [left + (right - left) * level / finest for level in range(finest + 1)]
+    handle = left + (right - left) * place / finest
+    with fine_lines(drawn, (0, height - 16, WIDTH, height + 16)) as lines:
+        _line(lines, left, right, 2.5, RAIL)
+        _line(lines, left, handle, 2.5, ACCENT)
+        for stop in stops:
+            _disc(lines, stop, 3.5, ACCENT if stop <= handle else RAIL)
+        _disc(lines, handle, 11, ACCENT)
+        _disc(lines, handle, 6.5, PAPER)
+    write(drawn, (left, height - 24), f"Level {step.level}", 22, 600, anchor="ls")
+    n_parts = "one part" if step.n_parts == 1 else f"{step.n_parts} parts"
+    write(drawn, (right, height - 24), n_parts, 22, ink=PALE_INK, anchor="rs")
+    return drawn
+
+
+def _line(lines: ImageDraw.ImageDraw, start: float, end: float, half: float, ink: tuple[int, int, int]) -> None:
+    box = (start, 16 - half, end, 16 + half)
+    lines.rounded_rectangle([FINENESS * value for value in box], FINENESS * half, fill=ink)
+
+
+def _disc(lines: ImageDraw.ImageDraw, middle: float, radius: float, ink: tuple[int, int, int]) -> None:
+    lines.ellipse([FINENESS * v for v in (middle - radius, 16 - radius, middle + radius, 16 + radius)], fill=ink)
