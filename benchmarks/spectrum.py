@@ -49,13 +49,19 @@ def main(arguments: list[str] | None = None) -> None:
 
 def convergence(options: argparse.Namespace) -> list[dict]:
     """Tabulate the error of the first eigenvalue of the regular tetrahedron, where flat triangles are exact."""
+    rows = convergence_rows()
+    print_table("Convergence on the regular tetrahedron", rows)
+    return rows
+
+
+def convergence_rows() -> list[dict]:
+    """Return the largest relative error of the first eigenvalue for each order and fineness."""
     exact = 4 * np.pi**2 / 3
     rows = []
     for order in (1, 2, 3):
         for n in range(2, 6):
             found = measured(("linear", "quadratic", "cubic")[order - 1], tetrahedron(n), 3, repeats=1)
             rows.append({"order": order, "edges": 2**n, "error": max(abs(np.array(found["values"]) / exact - 1))})
-    print_table("Convergence on the regular tetrahedron", rows)
     return rows
 
 

@@ -1,5 +1,6 @@
-"""The plots of docs/spectrum.md, from the rows of `benchmarks.spectrum`."""
+"""The plots of docs/spectrum.md, from rows of `benchmarks.spectrum` or from the tables that stand on the page."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib as mpl
@@ -27,21 +28,68 @@ NAMES = {
 }
 
 
+PAGE = Path(__file__).parents[1] / "docs" / "spectrum.md"
+
+
 def draw(results: dict[str, list[dict]], folder: Path) -> None:
     """Draw the plots of all tables there are."""
     folder.mkdir(parents=True, exist_ok=True)
     plots = {"convergence": _convergence, "accuracy": _accuracy, "size": _size}
     for name, rows in results.items():
-        figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
-        plots[name](axes, rows)
-        axes.set(xscale="log", yscale="log")
-        axes.grid(alpha=0.3)
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.legend(fontsize=8)
-        figure.savefig(folder / f"spectrum_{name}.png", dpi=110)
-        plt.close(figure)
+        _save(plots[name], rows, folder / f"spectrum_{name}.png")
+
+
+def draw_convergence(target: Path) -> None:
+    """Measure how eigenvalues of the tetrahedron converge, which takes seconds, and plot it."""
+    from benchmarks.spectrum import convergence_rows
+
+    _save(_convergence, convergence_rows(), target)
+
+
+def draw_accuracy(target: Path) -> None:
+    """Plot the table of accuracy on the page, so that plot and table agree."""
+    _save(_accuracy, rows_on_page({"solver", "vertices", "error", "CPU s"}), target)
+
+
+def draw_size(target: Path) -> None:
+    """Plot the table of costs on the page."""
+    _save(_size, rows_on_page({"mesh", "vertices", "pairs", "solver", "CPU s", "λ to ours"}), target)
+
+
+def rows_on_page(columns: set[str]) -> list[dict]:
+    """Return the rows of the first table of the page that has some columns; numbers as numbers."""
+    lines = PAGE.read_text().splitlines()
+    start = next(i for i, line in enumerate(lines) if columns <= set(_cells(line)))
+    header, rows = _cells(lines[start]), []
+    for line in lines[start + 2 :]:
+        if not line.startswith("|"):
+            break
+        rows.append({name: _value(cell) for name, cell in zip(header, _cells(line), strict=True)})
+    return rows
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def _value(cell: str) -> float | str:
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
+
+
+def _save(plot: Callable[[plt.Axes, list[dict]], None], rows: list[dict], target: Path) -> None:
+    figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
+    plot(axes, rows)
+    axes.set(xscale="log", yscale="log")
+    axes.grid(alpha=0.3)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.legend(fontsize=8)
+    figure.savefig(target, dpi=110)
+    plt.close(figure)
 
 
 def _convergence(axes: plt.Axes, rows: list[dict]) -> None:
