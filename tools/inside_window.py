@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from multiprocessing.connection import Client
 
 import bpy
+from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 # Seconds between looks at what was sent.
 INTERVAL = 0.02
@@ -46,6 +47,13 @@ def over_view():
         yield bpy.context
 
 
+def pixel_of(point):
+    """Return the pixel of the window, counted from below, that shows a point of the world in the largest 3D view."""
+    with over_view() as context:
+        x, y = location_3d_to_region_2d(context.region, context.space_data.region_3d, point)
+        return round(context.region.x + x), round(context.region.y + y)
+
+
 def _carry_out():
     try:
         while connection.poll():
@@ -65,7 +73,7 @@ def _answer(way, source):
         return "error", traceback.format_exc()
 
 
-namespace = {"bpy": bpy, "over_view": over_view, "Ticks": Ticks, "time": time}
+namespace = {"bpy": bpy, "over_view": over_view, "pixel_of": pixel_of, "Ticks": Ticks, "time": time}
 address, key = sys.argv[sys.argv.index("--") + 1 :]
 connection = Client(("localhost", int(address)), authkey=bytes.fromhex(key))
 bpy.context.preferences.view.show_splash = False

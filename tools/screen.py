@@ -16,7 +16,9 @@ class Screen:
     """An X screen kept in a file, by Xvfb."""
 
     def __init__(self, folder: Path) -> None:
-        command = ["Xvfb", "-displayfd", "1", "-screen", "0", SIZE, "-fbdir", str(folder), "+extension", "GLX"]
+        # Events are made in the application, so the cursor of the screen would only lie in the way.
+        options = ["-fbdir", str(folder), "+extension", "GLX", "-nocursor"]
+        command = ["Xvfb", "-displayfd", "1", "-screen", "0", SIZE, *options]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         with self._process.stdout as told:
             self.name = f":{told.readline().strip()}"
@@ -46,8 +48,9 @@ class Screen:
 def write_png(path: Path, pixels: np.ndarray) -> None:
     """Write (height, width, 3) uint8 as a PNG file."""
     height, width, _ = pixels.shape
-    # Each row begins with the number of its filter, 0 for none.
-    rows = np.pad(pixels.reshape(height, 3 * width), ((0, 0), (1, 0)))
+    # Rows as differences from those above are smaller; each begins with the number of this filter, 2.
+    rows = np.diff(pixels.reshape(height, 3 * width), axis=0, prepend=np.uint8(0))
+    rows = np.pad(rows, ((0, 0), (1, 0)), constant_values=((0, 0), (2, 0)))
     chunks = {b"IHDR": struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0), b"IDAT": zlib.compress(rows.tobytes(), 9)}
     with path.open("wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n")

@@ -24,6 +24,8 @@ USUAL_PLACES = (
     *("~/blender*/blender", "~/Applications/blender*/blender", "~/Downloads/blender*/blender"),
 )
 INSIDE = Path(__file__).with_name("inside_window.py")
+DIGITS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+KEYS = {" ": "SPACE"} | {str(digit): name for digit, name in enumerate(DIGITS)}
 # Seconds; drawing may be done by the processor.
 PATIENCE = 120.0
 
@@ -90,7 +92,7 @@ class Window:
         return self._ask("value", source)
 
     def press(self, key: str, **modifiers: bool) -> None:
-        """Press and release a key, named as Blender names it, where the mouse is."""
+        """Press and release a key or button, named as Blender names it, where the mouse is."""
         for value in ("PRESS", "RELEASE"):
             self._simulate(key, value, **modifiers)
 
@@ -99,16 +101,27 @@ class Window:
         self._mouse = (x, y)
         self._simulate("MOUSEMOVE", "NOTHING")
 
-    def click(self, x: int, y: int) -> None:
+    def click(self, x: int, y: int, **modifiers: bool) -> None:
         """Click with the left button."""
         self.point(x, y)
-        for value in ("PRESS", "RELEASE"):
-            self._simulate("LEFTMOUSE", value)
+        self.press("LEFTMOUSE", **modifiers)
+
+    def drag(self, start: tuple[int, int], end: tuple[int, int]) -> None:
+        """Press the left button in one place and release it in another."""
+        self.point(*start)
+        self._simulate("LEFTMOUSE", "PRESS")
+        for share in (0.25, 0.5, 1.0):
+            self.point(*(round(a + share * (b - a)) for a, b in zip(start, end, strict=True)))
+        self._simulate("LEFTMOUSE", "RELEASE")
+
+    def place(self, point: tuple[float, float, float]) -> tuple[int, int]:
+        """Return the pixel of the window that shows a point of the world in the largest 3D view."""
+        return self.value(f"pixel_of({point})")
 
     def write(self, text: str) -> None:
         """Type letters, digits and spaces."""
         for letter in text:
-            name = {" ": "SPACE"}.get(letter, letter.upper())
+            name = KEYS.get(letter, letter.upper())
             self._simulate(name, "PRESS", unicode=letter)
             self._simulate(name, "RELEASE")
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import examples
 from tools.window import Window, what_is_missing
@@ -15,6 +16,20 @@ ROOT = Path(__file__).parents[2]
 PACKAGE = "EIGENPARTS_PACKAGE"
 PICTURES = ROOT / "demo" / "window"
 MODULE = "bl_ext.user_default.eigenparts"
+# Pixels.
+PICTURE_WIDTH, PICTURE_HEIGHT = 1000, 760
+HEADER, HALF_HEADER = 28, 16
+
+PLACE_OF_VIEW = "next((a.x, a.y, a.width, a.height) for a in bpy.context.screen.areas if a.type == 'VIEW_3D')"
+PLACE_OF_SIDEBAR = (
+    "next((region.x + region.width // 3, region.y + region.height) for area in bpy.context.screen.areas "
+    "if area.type == 'VIEW_3D' for region in area.regions if region.type == 'UI')"
+)
+TITLES_OF_PANELS = (
+    "[panel.bl_label for panel in sorted((panel for panel in bpy.types.Panel.__subclasses__() "
+    "if getattr(panel, 'bl_category', '') == 'Eigenparts' and panel.is_registered "
+    "and not hasattr(panel, 'bl_parent_id')), key=lambda panel: panel.bl_order)]"
+)
 
 
 @pytest.fixture(scope="session")
@@ -69,6 +84,17 @@ def take(window):
     return lambda name: window.picture(PICTURES / f"{name}.png")
 
 
+@pytest.fixture
+def show(window):
+    """Keep a picture of the 3D view with the sidebar, for the pages of the guide."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+
+    def show_as(name, height=PICTURE_HEIGHT):
+        window.picture(PICTURES / f"window_{name}.png", view_with_sidebar(window, height))
+
+    return show_as
+
+
 @pytest.fixture(scope="session")
 def hand():
     """The smallest of the characters."""
@@ -81,6 +107,27 @@ def humanoid():
     return examples.humanoid()
 
 
+@pytest.fixture(scope="session")
+def walker():
+    """The same character with other faces."""
+    return examples.humanoid(5000)
+
+
+@pytest.fixture
+def pair(window, humanoid, walker):
+    """A character that is analyzed, has weights and is active; walking beside it, the one of other faces."""
+    path = window.folder / "pair.blend"
+    if not path.exists():
+        add_character(window, walker, "walk", shift=1.3)
+        add_character(window, humanoid)
+        add_weights(window, humanoid)
+        analyze(window)
+        window.run(f"bpy.ops.wm.save_as_mainfile(filepath={str(path)!r}, copy=True)")
+    window.run(f"bpy.ops.wm.open_mainfile(filepath={str(path)!r}, load_ui=False)")
+    look_from_the_front(window)
+    return window
+
+
 def add_character(window, character, pose="rest", shift=0.0):
     """Import a character as a user would, select it and look at it from the front."""
     path = window.folder / f"{character.name} {pose}.obj"
@@ -91,11 +138,70 @@ def add_character(window, character, pose="rest", shift=0.0):
     window.run(
         "with over_view():\n"
         f"    bpy.ops.wm.obj_import(filepath={str(path)!r}, forward_axis='Y', up_axis='Z')\n"
-        "    bpy.ops.view3d.view_axis(type='FRONT')\n"
-        "    bpy.ops.view3d.view_all()\n"
         "    bpy.context.object.data.validate()"
     )
+    look_from_the_front(window)
+
+
+def add_weights(window, character):
+    """Give the active mesh the weights of its character, as vertex groups called after the bones."""
+    weights = {
+        bone.name: [(vertex, column[vertex]) for vertex in np.flatnonzero(column).tolist()]
+        for bone, column in zip(character.bones, character.weights.T.round(6).tolist(), strict=True)
+    }
+    window.run(
+        f"for name, weights in {weights}.items():\n"
+        "    group = bpy.context.object.vertex_groups.new(name=name)\n"
+        "    for vertex, weight in weights:\n"
+        "        group.add([vertex], weight, 'REPLACE')"
+    )
+
+
+def look_from_the_front(window):
+    """Let the view show everything, from the front."""
+    window.run("with over_view():\n    bpy.ops.view3d.view_axis(type='FRONT')\n    bpy.ops.view3d.view_all()")
     window.settle()
+
+
+def select(window, *names):
+    """Select objects by name, the last one as the active one."""
+    window.run(
+        "with over_view():\n"
+        "    bpy.ops.object.select_all(action='DESELECT')\n"
+        f"    for name in {names}:\n"
+        "        bpy.data.objects[name].select_set(True)\n"
+        "        bpy.context.view_layer.objects.active = bpy.data.objects[name]\n"
+        "    bpy.ops.ed.undo_push(message='Select')"
+    )
+
+
+def unfold(window, *panels):
+    """Open some panels of the tab, as it is at first, and fold the others, by clicks on their headers."""
+    x, top = window.value(PLACE_OF_SIDEBAR)
+    headers = {title: top - HALF_HEADER - k * HEADER for k, title in enumerate(window.value(TITLES_OF_PANELS))}
+    window.click(x, headers["Analyze"])
+    window.settle()
+    # Ctrl folds all others, but only where a panel has none within it.
+    window.click(x, headers["Level"], ctrl=True)
+    window.settle()
+    window.click(x, headers["Level"])
+    for title in sorted(panels, key=headers.get):
+        window.settle()
+        window.click(x, headers[title])
+    window.point(500, 200)
+    window.settle()
+
+
+def view_with_sidebar(window, height):
+    """Return the rows and columns of the screen that a picture of the 3D view with the sidebar is cut from."""
+    left, bottom, n_columns, n_rows = window.value(PLACE_OF_VIEW)
+    top, right = window.pixels().shape[0] - bottom - n_rows, left + n_columns
+    return slice(top, top + height), slice(right - PICTURE_WIDTH, right)
+
+
+def labels(window, mesh="bpy.context.object.data"):
+    """Return the part of each face of a mesh."""
+    return window.value(f"[attribute.value for attribute in {mesh}.attributes['part'].data]")
 
 
 def choose(window, action):
@@ -112,3 +218,9 @@ def analyze(window):
     choose(window, "analyze")
     window.wait_for("bpy.context.object and 'eigenparts_state' in bpy.context.object.data")
     window.settle()
+
+
+def nearest_quads(source, target):
+    """Return for each quad of a character the one of another with the nearest middle, both at rest."""
+    middles = [character.vertices[character.quads].mean(axis=1) for character in (source, target)]
+    return cKDTree(middles[0]).query(middles[1])[1]

@@ -1,24 +1,19 @@
 """What a user does with parts in the window: level, undo, redo, save, load, registering."""
 
-from tests.window.conftest import add_character, analyze, choose
+import numpy as np
+
+from tests.window.conftest import add_character, analyze, choose, labels, nearest_quads, select, unfold
 
 LEVEL = "bpy.context.object.data.eigenparts.level"
-STATUS = "bpy.context.window_manager.eigenparts"
-LABELS = "[attribute.value for attribute in {mesh}.attributes['part'].data]"
 
 
-def labels(window, mesh="bpy.context.object.data"):
-    return window.value(LABELS.format(mesh=mesh))
-
-
-def test_the_level_can_be_moved_and_the_view_follows(window, hand, take):
-    add_character(window, hand)
-    analyze(window)
-    at_default, n_parts = window.pixels(), len(set(labels(window)))
-    window.run(f"{LEVEL} = 1")
-    take("hand_level_1")
-    assert len(set(labels(window))) == window.value("bpy.context.object.data.eigenparts.n_parts") < n_parts
-    assert (window.pixels() != at_default).any(axis=2).mean() > 0.01
+def test_the_level_can_be_moved_and_the_view_follows(pair, show, take):
+    show("analyzed")
+    at_default, n_parts = pair.pixels(), len(set(labels(pair)))
+    pair.run(f"{LEVEL} = 1")
+    take("level_1")
+    assert len(set(labels(pair))) == pair.value("bpy.context.object.data.eigenparts.n_parts") < n_parts
+    assert (pair.pixels() != at_default).any(axis=2).mean() > 0.01
 
 
 def test_undo_and_redo_take_the_analysis_back_and_forth(window, hand):
@@ -65,3 +60,13 @@ def test_two_characters_get_the_same_parts(window, hand, take):
     rest, fist = (labels(window, f"bpy.data.objects['hand {pose}'].data") for pose in ("rest", "fist"))
     # The faces are the same, so labels can be compared one by one.
     assert sum(a == b for a, b in zip(rest, fist, strict=True)) > 0.95 * len(rest)
+
+
+def test_a_pose_with_other_faces_gets_the_same_parts_in_the_same_places(pair, humanoid, walker, show):
+    select(pair, "humanoid walk", "humanoid rest")
+    choose(pair, "register selected")
+    pair.wait_for("'part' in bpy.data.objects['humanoid walk'].data.attributes")
+    unfold(pair, "Analyze", "Level", "Parts", "Register")
+    show("registered")
+    expected = np.array(labels(pair))[nearest_quads(humanoid, walker)]
+    assert (np.array(labels(pair, "bpy.data.objects['humanoid walk'].data")) == expected).mean() > 0.95

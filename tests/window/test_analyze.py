@@ -46,7 +46,7 @@ def is_coloured(pixels):
     return np.ptp(pixels.astype(int), axis=2) > 60
 
 
-def test_progress_rises_and_says_what_is_done(running, take):
+def test_progress_rises_and_says_what_is_done(running, show):
     running.run("seen = []")
     running.run(
         f"def look():\n"
@@ -56,7 +56,8 @@ def test_progress_rises_and_says_what_is_done(running, take):
         f"bpy.app.timers.register(look)"
     )
     running.wait_for(f"{STATUS}.fraction > 0.4")
-    take("progress")
+    # Down to the status bar.
+    show("progress", height=1000)
     running.wait_for(f"not {STATUS}.is_running")
     fractions, texts = zip(*running.value("seen"), strict=True)
     assert list(fractions) == sorted(fractions)
