@@ -5,7 +5,7 @@ from tests.window.conftest import labels, unfold
 SETTINGS = "bpy.context.object.data.eigenparts"
 IS_PICKING = "bpy.context.window_manager.eigenparts.is_picking"
 # On the humanoid, seen from the front.
-PLACES = {"hand": (0.55, -0.02, 1.05), "head": (0.0, -0.1, 1.65), "belly": (0.0, -0.1, 1.05)}
+PLACES = {"hand": (0.7, -0.02, 1.3), "head": (0.0, -0.1, 1.65), "belly": (0.0, -0.1, 1.05)}
 
 
 def part_at(window, place):
