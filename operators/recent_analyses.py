@@ -23,15 +23,16 @@ def analyze_and_keep(
 ) -> "engine.Analysis":
     """Return a new analysis, and keep it."""
     analysis = analyze(arrays, options, progress)
-    _recent.put(_key(arrays, options), analysis, len(arrays.vertices))
+    _recent.put(key_of_analysis(arrays, options), analysis, len(arrays.vertices))
     return analysis
 
 
 def recall(arrays: MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> "engine.Analysis":
     """Return the analysis that was made before, a new one if it is not here any more."""
-    return _recent.get(_key(arrays, options)) or analyze_and_keep(arrays, options, progress)
+    return _recent.get(key_of_analysis(arrays, options)) or analyze_and_keep(arrays, options, progress)
 
 
-def _key(arrays: MeshArrays, options: dict[str, Any]) -> str:
+def key_of_analysis(arrays: MeshArrays, options: dict[str, Any]) -> str:
+    """Return a text that is the same for the same mesh and options."""
     chosen = (entry for name in sorted(options) for entry in (name, options[name]))
     return key_of([arrays.vertices, arrays.triangles, *chosen])

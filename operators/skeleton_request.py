@@ -11,11 +11,16 @@ import numpy as np
 from . import bone_layout, engine, exchange, part_sides, part_table, recent_analyses, state
 from .analysis_request import AnalysisRequest
 from .analyze import Ticket, find_mesh
+from .recent import Recent, key_of
 from .refusals import Refusal
 from .results import read_labels
 from .rollback import all_or_nothing, bound_or_not, nothing_left_behind
 from .sentences import tell
 from .skeleton_options import ArmatureOptions, SkeletonOptions
+
+# How many shapes are remembered by their symmetry.
+RECENT_SYMMETRIES = 8
+_recent_partners = Recent(RECENT_SYMMETRIES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +155,8 @@ def lay_bones(
 
     analysis = recent_analyses.recall(arrays, options, of_analysis)
     labels = wish.labels[arrays.polygon_of_triangle]
-    partner = engine.mirror_parts(analysis, labels, progress=of_symmetry)
+    key = key_of([recent_analyses.key_of_analysis(arrays, options), labels])
+    partner = _recall_partner(key, partial(engine.mirror_parts, analysis, labels, progress=of_symmetry))
     progress(0.9, "Laying bones")
     level = min(wish.level, analysis.hierarchy.n_levels - 1)
     skeleton = engine.skeleton(
@@ -165,6 +171,15 @@ def lay_bones(
     progress(0.95, "Binding the mesh")
     weights = engine.binding_weights(analysis, skeleton) if wish.needs_weights else None
     return Laid(skeleton, weights, wish.pairing or _pairing(skeleton, partner))
+
+
+def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarray | None:
+    """Return which parts mirror which, as it was found before if that is known: a bent pose takes seconds."""
+    kept = _recent_partners.get(key)
+    if kept is None:
+        kept = (find(),)
+        _recent_partners.put(key, kept, 1)
+    return kept[0]
 
 
 def part_names(mesh: bpy.types.Mesh, skeleton: "engine.Skeleton") -> dict[int, str]:
