@@ -1,6 +1,11 @@
-"""Object menu: all actions in one submenu, which also puts them into the menu search (F3)."""
+"""Object menu: all actions in one submenu, which also puts them into the menu search (F3); and those on faces.
+
+Faces are selected in edit mode, so what is done to selected faces is in the Face menu.
+"""
 
 import bpy
+
+from .tab import analyzed_mesh
 
 # In the order of the work; None is a line between two groups.
 ENTRIES = (
@@ -49,16 +54,25 @@ def _draw_entry(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.menu("EIGENPARTS_MT_object")
 
 
+def _draw_on_faces(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    if analyzed_mesh(context) is not None:
+        menu.layout.separator()
+        menu.layout.operator("eigenparts.paint_part", icon="BRUSH_DATA")
+        menu.layout.operator("eigenparts.paint_part", text="New Part of Selected Faces", icon="ADD").new = True
+
+
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((EIGENPARTS_MT_object,))
 
 
 def register() -> None:
-    """Add the submenu to the Object menu."""
+    """Add the submenu to the Object menu, and what is done to faces to the Face menu."""
     _register_classes()
     bpy.types.VIEW3D_MT_object.append(_draw_entry)
+    bpy.types.VIEW3D_MT_edit_mesh_faces.append(_draw_on_faces)
 
 
 def unregister() -> None:
-    """Take it away."""
+    """Take them away."""
+    bpy.types.VIEW3D_MT_edit_mesh_faces.remove(_draw_on_faces)
     bpy.types.VIEW3D_MT_object.remove(_draw_entry)
     _unregister_classes()

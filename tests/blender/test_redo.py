@@ -110,6 +110,19 @@ def test_a_change_afterwards_is_the_same_as_a_first_run_with_it(analyzed, name, 
         assert left_by() == again
 
 
+def test_faces_are_given_to_another_part_afterwards(analyzed):
+    labels = values_of(analyzed.data, "part")
+    bpy.ops.eigenparts.select_part(part=1)
+    with Undoable() as blender:
+        shown = blender.run("paint_part", part=0)
+        bpy.ops.ed.undo()
+        assert bpy.context.mode == "EDIT_MESH"
+        blender.run("paint_part", **(shown | {"part": 2}))
+        np.testing.assert_array_equal(
+            values_of(bpy.data.objects["star"].data, "part"), np.where(labels == 1, 2, labels)
+        )
+
+
 def test_the_panel_of_segment_begins_with_what_the_mesh_shows(analyzed):
     with Undoable() as blender:
         shown = blender.run("segment")
