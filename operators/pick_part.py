@@ -14,8 +14,8 @@ from .state import is_analyzed
 HOW = "Click a part; ESC or right click when done."
 NOTHING = "There is no surface here."
 NO_PARTS = "This object has no parts; analyze it first."
-# Where a ray that goes on behind an object begins, as a fraction of the way to it.
-BEHIND = 1e-5
+# Where a ray that goes on behind a surface begins, as a fraction of the way to it, and how often it does at most.
+BEHIND, MOST_PASSED = 1e-5, 1000
 
 
 class EIGENPARTS_OT_pick_part(bpy.types.Operator):
@@ -143,7 +143,7 @@ def _first_hit(
 ) -> tuple[bpy.types.Object, int]:
     """Return the first object that a ray meets, and the face of it as its modifiers leave it."""
     depsgraph = context.evaluated_depsgraph_get()
-    for _ in context.view_layer.objects:
+    for _ in range(MOST_PASSED):
         found, place, _, face, obj, _ = context.scene.ray_cast(depsgraph, origin, direction)
         if not found:
             break
