@@ -12,6 +12,10 @@ class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        if context.object is not None and context.object.type == "ARMATURE":
+            # What was just created is active.
+            layout.operator("object.posemode_toggle", icon="POSE_HLT")
+            return
         if analyzed_mesh(context) is None:
             draw_missing_analysis(layout, context)
             return
