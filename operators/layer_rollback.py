@@ -22,14 +22,22 @@ def layers_or_nothing(obj: bpy.types.Object, given: list[Layer]) -> Iterator[Non
         # Slots of materials and the face map are kept with what is ours.
         if layer.kind not in (layers.MATERIAL, layers.PARTS)
     ]
-    active = obj.vertex_groups.active_index, obj.data.uv_layers.active_index, obj.active_shape_key_index
+    places = (
+        (obj.vertex_groups, "active_index"),
+        (obj.data.uv_layers, "active_index"),
+        (obj, "active_shape_key_index"),
+    )
+    active = [(owner, name, getattr(owner, name)) for owner, name in places]
     with all_or_nothing(obj.data):
         try:
             yield
         except BaseException:
             for give_back in kept:
                 give_back()
-            obj.vertex_groups.active_index, obj.data.uv_layers.active_index, obj.active_shape_key_index = active
+            for owner, name, index in active:
+                # Where there is nothing that could be active, an index cannot be set.
+                if getattr(owner, name) != index:
+                    setattr(owner, name, index)
             raise
 
 

@@ -115,9 +115,7 @@ def _name(row: "EigenpartsPartRow") -> str:
 
 
 def _set_name(row: "EigenpartsPartRow", name: str) -> None:
-    if _told(row.id_data, state.summarize) is not None:
-        part_table.rename(row.id_data, row.part, name)
-        _told(row.id_data, results.write_outputs)
+    _told(row.id_data, results.rename_part, row.part, name)
 
 
 def _colour(row: "EigenpartsPartRow") -> tuple[float, ...]:
@@ -125,9 +123,7 @@ def _colour(row: "EigenpartsPartRow") -> tuple[float, ...]:
 
 
 def _set_colour(row: "EigenpartsPartRow", colour: tuple[float, float, float]) -> None:
-    if _told(row.id_data, state.summarize) is not None:
-        part_table.set_colour(row.id_data, row.part, tuple(colour))
-        _told(row.id_data, results.write_outputs)
+    _told(row.id_data, results.colour_part, row.part, tuple(colour))
 
 
 class EigenpartsPartRow(bpy.types.PropertyGroup):

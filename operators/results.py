@@ -112,6 +112,22 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
     mesh.update()
 
 
+def rename_part(mesh: bpy.types.Mesh, part: int, name: str) -> None:
+    """Give a part a name; an empty one brings its first name back."""
+    state.summarize(mesh)
+    with all_or_nothing(mesh):
+        part_table.rename(mesh, part, name)
+        write_outputs(mesh)
+
+
+def colour_part(mesh: bpy.types.Mesh, part: int, colour: tuple[float, float, float]) -> None:
+    """Give a part a colour of its own, in linear RGB."""
+    state.summarize(mesh)
+    with all_or_nothing(mesh):
+        part_table.set_colour(mesh, part, colour)
+        write_outputs(mesh)
+
+
 def recolour(mesh: bpy.types.Mesh) -> None:
     """Give the outputs of a mesh that show colours those that its parts have by now."""
     outputs.write(mesh, read_labels(mesh), outputs.COLOURED)

@@ -189,7 +189,8 @@ def _restore_property(mesh: bpy.types.Mesh, name: str, kept: dict[str, Any]) -> 
 
 
 def _restore_rows(mesh: bpy.types.Mesh, name: str, fields: tuple[str, ...], kept: list[tuple[Any, ...]]) -> None:
-    if not hasattr(mesh, "eigenparts"):
+    # Whoever sets a property of a row still holds it, so rows are not made anew without need.
+    if _rows(mesh, name, fields) == kept:
         return
     rows = getattr(mesh.eigenparts, name)
     rows.clear()

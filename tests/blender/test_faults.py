@@ -151,6 +151,34 @@ def test_a_cut_that_fails_leaves_the_faces(analyzed, monkeypatch, step):
     assert all_of(analyzed.data) == before
 
 
+def test_a_cut_that_fails_leaves_weights_keys_and_maps(analyzed, monkeypatch):
+    analyzed.vertex_groups.new(name="mine").add([0, 1, 2], 0.5, "REPLACE")
+    analyzed.shape_key_add(name="Basis")
+    analyzed.shape_key_add(name="wide").data[5].co.x += 1
+    analyzed.data.uv_layers.new(name="map").uv[7].vector = 0.25, 0.75
+    before = all_of(analyzed.data), object_as_it_is(analyzed), values_of(analyzed.data, "map", 2, np.float32, "vector")
+    fail_at(monkeypatch, "state.store_branches", 1)
+    with pytest.raises(RuntimeError):
+        bpy.ops.eigenparts.cut()
+    after = all_of(analyzed.data), object_as_it_is(analyzed), values_of(analyzed.data, "map", 2, np.float32, "vector")
+    assert after[:2] == before[:2]
+    np.testing.assert_array_equal(after[2], before[2])
+
+
+def test_a_name_and_a_colour_that_cannot_be_written_are_not_taken(full, monkeypatch):
+    before, row = all_of(full.data), full.data.eigenparts.rows[2]
+    for writer in ("vertex_groups._fill_softly", "material_slots._assign", "corner_colours.write_attribute"):
+        with monkeypatch.context() as patch:
+            fail_at(patch, writer, 1)
+            row.title = "Leg"
+        with monkeypatch.context() as patch:
+            fail_at(patch, writer, 1)
+            row.color = 1, 0, 1
+        assert all_of(full.data) == before
+    row.title = "Leg"
+    assert "Leg" in groups_of(full.data)
+
+
 @pytest.fixture
 def full(analyzed):
     """The star with all outputs, and a group, a material and an assignment of the user's."""

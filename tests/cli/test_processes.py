@@ -7,10 +7,11 @@ import sys
 import time
 from pathlib import Path
 
+import bpy
 import psutil
 import pytest
 
-from tests.cli.files import write_off
+from tests.cli.files import add_object, write_blend, write_off
 from tests.shapes import star
 
 # Seconds that are enough for a small star on a machine that is busy.
@@ -169,6 +170,24 @@ def test_a_batch_killed_in_the_middle_is_resumed(command_line, folder, tmp_path)
     assert f"({n_finished} finished before)" in err
     assert out.count(", written to ") == 6 - n_finished
     assert len(texts_of(folder)) == 6
+
+
+def test_a_process_killed_while_it_writes_leaves_the_old_result_or_the_new_one(run, command_line, tmp_path):
+    add_object(star(5, 3))
+    source, result = write_blend(tmp_path / "star.blend"), tmp_path / "star_parts.blend"
+    run("segment", source)
+    known = {source.read_bytes(), result.read_bytes()}
+    again = command_line("segment", source, "--level", 2)
+    stage = tmp_path / ".eigenparts-star_parts.blend"
+    while again.poll() is None and not stage.exists():
+        time.sleep(0.001)
+    again.kill()
+    again.communicate()
+    bpy.ops.wm.open_mainfile(filepath=str(result))
+    assert bpy.data.objects["star"].data["eigenparts_state"]["level"] in (2, 4)
+    assert source.read_bytes() in known
+    assert run("segment", source, "--level", 3)[0] == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["star.blend", result.name, result.name + ".json"]
 
 
 def wait_for(something):
