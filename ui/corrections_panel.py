@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..operators.sentences import in_language
 from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
 
 
@@ -12,7 +13,7 @@ class EIGENPARTS_UL_corrections(bpy.types.UIList):
         row = layout.row(align=True)
         name = row.row()
         name.active = not item.rests
-        name.label(text=item.title, translate=False, icon="PAUSE" if item.rests else "CHECKMARK")
+        name.label(text=in_language(item.title), translate=False, icon="PAUSE" if item.rests else "CHECKMARK")
         remove = row.operator("eigenparts.remove_correction", text="", icon="X", emboss=False)
         remove.index = item.place
 

@@ -8,6 +8,8 @@ import bpy
 import pytest
 
 ROOT = Path(__file__).parents[2]
+# Functions that return what is shown.
+SHOWN = {"described"}
 # Calls that show what is no sentence, and the place of their argument that does.
 PLACES = {"progress": 1, "_report": 1, "in_language": 0}
 
@@ -27,6 +29,8 @@ def texts_of(tree):
     pieces = {id(piece) for node in nodes if isinstance(node, ast.JoinedStr) for piece in node.values}
     texts = {filled(node) for node in nodes if id(node) not in docstrings | pieces}
     shown = {filled(node.args[PLACES[called(node)]]) for node in nodes if called(node) in PLACES}
+    inside = [node for whole in nodes if getattr(whole, "name", "") in SHOWN for node in ast.walk(whole)]
+    shown |= {filled(node) for node in inside if isinstance(node, ast.JoinedStr)}
     return {text for text in texts if " " in text and text.endswith(".")} | shown
 
 

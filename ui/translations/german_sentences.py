@@ -106,6 +106,11 @@ GERMAN_SENTENCES: dict[str, str] = {
     "{} and {} do not touch, so they cannot be one part.": "{} und {} berühren sich nicht, können also nicht ein Teil sein.",
     "Select the faces first that the part is to have.": "Zuerst die Flächen auswählen, die das Teil haben soll.",
     "The position of the new border is between 0, the old border, and 1, the tip.": "Der Ort der neuen Grenze liegt zwischen 0, der alten Grenze, und 1, der Spitze.",
+    "{}: level {}": "{}: Stufe {}",
+    "{} joined to {}": "{} verbunden mit {}",
+    "{} split, {} beyond": "{} gespalten, jenseits {}",
+    "{}: border {}": "{}: Grenze {}",
+    "{}: painted faces": "{}: zugeordnete Flächen",
     # Registering.
     "Select the meshes to register, and last the one that has the parts.": "Die zu registrierenden Netze auswählen, zuletzt das mit den Teilen.",
     "The object is not registered; register it first.": "Das Objekt ist nicht registriert; zuerst registrieren.",
