@@ -42,6 +42,7 @@ BENCHMARKS = {
     "transfer": Benchmark(),
     "skeleton": Benchmark(quick=""),
     "slider": Benchmark("", "--vertices 10000"),
+    "size": Benchmark("", "--vertices 13000"),
     "load": Benchmark("", "--meshes 50 --changes 20"),
     "fuzzing": Benchmark("--cases 1000", "--cases 50"),
     "corpus": Benchmark("DATA"),

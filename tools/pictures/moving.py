@@ -6,13 +6,18 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
+from scipy.cluster.vq import kmeans2
 from scipy.spatial import cKDTree
+
+from tools.pictures.lettering import INK
 
 # Of red, green and blue in one number.
 PLACES = np.array([65536, 256, 1])
 N_COLOURS, N_GREYS = 255, 72
 # The darkest of the greys, and how far apart red, green and blue of a grey may be, of 255.
 DARKEST, GREY = 110, 6
+# Greys that are darker than that, and colours that the palette is chosen from.
+N_DARK, N_DRAWN = 8, 20_000
 # Steps of 255 that a pixel may change from frame to frame and still count as resting: what is left of the noise.
 REST = 4
 
@@ -71,10 +76,18 @@ def _palette(colours: np.ndarray, n_times: np.ndarray) -> np.ndarray:
         How often each occurs. Each counts with the root of that, so that small parts have their colours as well.
     """
     is_grey = np.ptp(colours, axis=1) <= GREY
-    repeated = colours[~is_grey].repeat(np.sqrt(n_times[~is_grey]).astype(int), axis=0)
-    sheet = Image.fromarray(repeated.astype(np.uint8)[None])
-    found = sheet.quantize(N_COLOURS - N_GREYS, method=Image.Quantize.MEDIANCUT, kmeans=2).getpalette()
-    # The brightest grey of all is the background, which has to be met exactly.
-    background = colours[n_times.argmax()]
-    greys = DARKEST + np.linspace(0, 1, N_GREYS)[:, None] * (background - DARKEST)
-    return np.concatenate([np.reshape(found, (-1, 3))[: N_COLOURS - N_GREYS], greys.round().astype(int)])
+    found = _clustered(colours[~is_grey], np.sqrt(n_times[~is_grey]))
+    # The brightest grey of all is the background, which has to be met exactly; texts have some dark ones.
+    light = DARKEST + np.linspace(0, 1, N_GREYS - N_DARK)[:, None] * (colours[n_times.argmax()] - DARKEST)
+    dark = np.linspace(INK, np.full(3, DARKEST), N_DARK, endpoint=False)
+    return np.concatenate([found, dark, light]).round().astype(int)
+
+
+def _clustered(colours: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Return few colours for many, or these themselves if they are few."""
+    n_clusters = N_COLOURS - N_GREYS
+    if len(colours) <= n_clusters:
+        return colours
+    drawn = np.random.default_rng(0).choice(len(colours), N_DRAWN, p=weights / weights.sum())
+    found, _ = kmeans2(colours[drawn].astype(float), n_clusters, minit="++", seed=0)
+    return found
