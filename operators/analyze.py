@@ -49,7 +49,7 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
         mesh = context.object.data
         results.refuse_foreign_results(mesh)
         ticket = Ticket(mesh.session_uid, exchange.fingerprint(mesh))
-        return partial(analyze_arrays, *self.read(context), analyze=recent_analyses.analyze_and_keep), ticket
+        return partial(_analyze_and_keep, *self.read(context)), ticket
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
@@ -75,6 +75,12 @@ def analyze_arrays(
     start = time.perf_counter()
     analysis = analyze(arrays, options, progress)
     return outcome_of(analysis, arrays, options, time.perf_counter() - start)
+
+
+def _analyze_and_keep(
+    arrays: exchange.MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]
+) -> Outcome:
+    return analyze_arrays(arrays, options, progress, recent_analyses.analyze_and_keep)
 
 
 def outcome_of(
