@@ -89,8 +89,8 @@ def show(window):
     """Keep a picture of the 3D view with the sidebar, for the pages of the guide."""
     PICTURES.mkdir(parents=True, exist_ok=True)
 
-    def show_as(name, height=PICTURE_HEIGHT):
-        window.picture(PICTURES / f"window_{name}.png", view_with_sidebar(window, height))
+    def show_as(name, width=PICTURE_WIDTH, height=PICTURE_HEIGHT):
+        window.picture(PICTURES / f"window_{name}.png", view_with_sidebar(window, width, height))
 
     return show_as
 
@@ -176,7 +176,7 @@ def select(window, *names):
 
 
 def unfold(window, *panels):
-    """Open some panels of the tab, as it is at first, and fold the others, by clicks on their headers."""
+    """Open some panels of the tab beside Analyze, which is always open, and fold all others, by clicks on headers."""
     x, top = window.value(PLACE_OF_SIDEBAR)
     headers = {title: top - HALF_HEADER - k * HEADER for k, title in enumerate(window.value(TITLES_OF_PANELS))}
     window.click(x, headers["Analyze"])
@@ -185,18 +185,18 @@ def unfold(window, *panels):
     window.click(x, headers["Level"], ctrl=True)
     window.settle()
     window.click(x, headers["Level"])
-    for title in sorted(panels, key=headers.get):
+    for title in sorted(("Analyze", *panels), key=headers.get):
         window.settle()
         window.click(x, headers[title])
     window.point(500, 200)
     window.settle()
 
 
-def view_with_sidebar(window, height):
+def view_with_sidebar(window, width, height):
     """Return the rows and columns of the screen that a picture of the 3D view with the sidebar is cut from."""
     left, bottom, n_columns, n_rows = window.value(PLACE_OF_VIEW)
     top, right = window.pixels().shape[0] - bottom - n_rows, left + n_columns
-    return slice(top, top + height), slice(right - PICTURE_WIDTH, right)
+    return slice(top, top + height), slice(max(0, right - width), right)
 
 
 def labels(window, mesh="bpy.context.object.data"):

@@ -6,6 +6,8 @@ import pytest
 from tests.window.conftest import MODULE, add_character, analyze, choose
 
 STATUS = "bpy.context.window_manager.eigenparts"
+# Pixels.
+SCREEN = 1600, 1000
 # Seconds; a user who presses ESC wants the window back by then.
 AT_ONCE = 0.5
 
@@ -56,8 +58,8 @@ def test_progress_rises_and_says_what_is_done(running, show):
         f"bpy.app.timers.register(look)"
     )
     running.wait_for(f"{STATUS}.fraction > 0.4")
-    # Down to the status bar.
-    show("progress", height=1000)
+    # With the status bar, and what it says on the left.
+    show("progress", *SCREEN)
     running.wait_for(f"not {STATUS}.is_running")
     fractions, texts = zip(*running.value("seen"), strict=True)
     assert list(fractions) == sorted(fractions)

@@ -31,7 +31,7 @@ def test_a_part_is_split_and_joined_again(pair, show):
     before, part = labels(pair), arm(pair)
     pair.run(f"{SETTINGS}.active_part = {part}")
     correct(pair, "split_part", part=part)
-    unfold(pair, "Analyze", "Parts", "Correct by Hand")
+    unfold(pair, "Parts", "Correct by Hand")
     show("corrected")
     (new,) = set(labels(pair)) - set(before)
     correct(pair, "merge_parts", part=new, into=part)

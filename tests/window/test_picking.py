@@ -22,7 +22,7 @@ def start_picking(window):
 
 
 def test_each_click_makes_a_part_active_until_escape(pair, show):
-    unfold(pair, "Analyze", "Parts")
+    unfold(pair, "Parts")
     start_picking(pair)
     picked = []
     for place in PLACES.values():

@@ -43,7 +43,7 @@ def test_an_armature_is_made_and_a_bone_of_it_turns_what_it_is_bound_to(rigged, 
     assert name in rigged.value(f"[group.name for group in {MESH}.vertex_groups]")
     rigged.press("TAB", ctrl=True)
     select(rigged, "humanoid rest rig", "humanoid rest")
-    unfold(rigged, "Analyze", "Parts", "Skeleton")
+    unfold(rigged, "Parts", "Skeleton")
     show("armature")
 
 

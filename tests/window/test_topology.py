@@ -10,7 +10,7 @@ def test_a_traced_complex_is_drawn_and_its_points_sum_to_those_of_a_sphere(pair,
     choose(pair, "trace complex")
     pair.wait_for("any('places' in obj for obj in bpy.data.objects)")
     pair.run("bpy.context.window_manager.eigenparts_complex_through = True")
-    unfold(pair, "Analyze", "Topology")
+    unfold(pair, "Topology")
     show("complex")
     counts = pair.value(COUNTS)
     assert counts["minimum"] - counts["saddle"] + counts["maximum"] == 2

@@ -36,7 +36,7 @@ def test_weights_are_those_the_character_was_made_with(transferred, walker, show
     true = walker.weights[:, [[bone.name for bone in walker.bones].index(name) for name in names]]
     assert 0.5 * np.abs(weights(transferred, TARGET) - true).sum(axis=1).mean() < 0.05
     show_upper_arm(transferred)
-    unfold(transferred, "Analyze", "Transfer")
+    unfold(transferred, "Transfer")
     show("transferred")
 
 
