@@ -50,6 +50,9 @@ def faces_or_nothing(mesh: bpy.types.Mesh) -> Iterator[None]:
         edited.from_mesh(copy)
         edited.to_mesh(mesh)
         edited.free()
+        # Blender 5 gives a mesh with UV maps a selection of them on this way.
+        for name in set(mesh.attributes.keys()) - set(copy.attributes.keys()):
+            mesh.attributes.remove(mesh.attributes[name])
         raise
     finally:
         bpy.data.meshes.remove(copy)
