@@ -11,6 +11,7 @@ from .errors import LevelError, RegistrationError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
 from .field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
 from .fields import DIFFUSION, Net, ScalarField, eigenfunction_field
+from .matching_basis import solve_for_matching
 from .mesh import Floats, Ints, TriangleMesh
 from .msc.diagram import PersistenceDiagram
 from .msc.links import links_of
@@ -36,11 +37,6 @@ from .surface import Surface, analyzed_surface, clean_surface
 WITHIN_THRESHOLD = 0.004
 # And has at least this many faces.
 LEAST_FACES_WITHIN = 8
-# Functions for matching and dense maps, and the least number of unknowns that carry them accurately: elements of a
-# higher order are used where linear ones have fewer.
-MATCHING_FUNCTIONS = 100
-MATCHING_UNKNOWNS = 3000
-
 APART = (
     "Each loose part was analyzed by itself, so there is no one shape to be matched or to get bones; analyze the mesh"
     " with its loose parts bridged, or the largest alone."
@@ -110,7 +106,7 @@ class Analysis:
         self.require_one_shape()
         kept = vars(self)
         if "_matching_basis" not in kept:
-            kept["_matching_basis"] = _solve_for_matching(self.surface, self._known_basis, progress)
+            kept["_matching_basis"] = solve_for_matching(self.surface, self._known_basis, progress)
         return kept["_matching_basis"]
 
     def require_one_shape(self) -> None:
@@ -350,29 +346,6 @@ def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
     """
     basis = analysis.eigenbasis
     return divide_at_zero(eigenfunction_field(basis, function), analysis.mesh, basis.surface)
-
-
-def _solve_for_matching(surface: Surface, shown: Eigenbasis | None, progress: Progress) -> Eigenbasis:
-    order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)
-    n_functions = min(MATCHING_FUNCTIONS, _n_unknowns(surface, order) - 1)
-    basis = solve_on_surface(surface, n_functions, order=order, progress=progress)
-    return basis if shown is None else _with_signs_of(shown, basis, len(surface.vertex_of_input))
-
-
-def _with_signs_of(shown: Eigenbasis, basis: Eigenbasis, n_vertices: int) -> Eigenbasis:
-    """Return a basis whose functions point where those do that the user sees; elements of two orders may differ."""
-    n_shared = min(len(shown.values), len(basis.values)) if shown.boundary == basis.boundary else 0
-    functions = basis.functions.copy()
-    agreement = (shown.functions[:n_vertices, :n_shared] * functions[:n_vertices, :n_shared]).sum(axis=0)
-    functions[:, :n_shared] *= np.where(agreement < 0, -1.0, 1.0)
-    return dataclasses.replace(basis, functions=functions)
-
-
-def _n_unknowns(surface: Surface, order: int) -> int:
-    """Return how many unknowns elements of an order have on a surface."""
-    n_vertices, n_triangles = len(np.unique(surface.mesh.triangles)), len(surface.mesh.triangles)
-    n_edges = len(surface.mesh.edges.vertices)
-    return n_vertices + (order - 1) * n_edges + (order - 1) * (order - 2) // 2 * n_triangles
 
 
 def _divided_further(analysis: Analysis, whole: Segmentation, part: int, mode: str) -> Segmentation:

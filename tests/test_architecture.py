@@ -29,7 +29,7 @@ OUTSIDE = {
 # A part of the engine may import only parts that stand before it: the path of the data, read from left to right.
 PIPELINE = [
     *("errors", "progress", "memory", "mesh", "shells", "surface", "orientation", "geodesics", "fem", "fields"),
-    *("field_choice", "shell_fields", "msc", "segmentation", "analysis", "registration", "skeleton"),
+    *("field_choice", "shell_fields", "matching_basis", "msc", "segmentation", "analysis", "registration", "skeleton"),
 ]
 
 
