@@ -328,7 +328,7 @@ def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
 
     before = everything_on(fist.data)
     settings = {"field": "DIFFUSION", "eigenfunction": 1, "attribute": "", "order": "AUTO", "boundary": "NEUMANN"}
-    settings["use_modifiers"] = False
+    settings |= {"shells": "BRIDGED", "use_modifiers": False}
     work, _ = Registers.start(None, bpy.context, rest, [fist], Wish(mirrored=True), settings)
     with pytest.raises(engine.Cancelled):
         work(cancel)

@@ -28,7 +28,9 @@ def texts_of(tree):
     docstrings = {id(node.body[0].value) for node in nodes if isinstance(node, documented) and is_told(node.body[0])}
     pieces = {id(piece) for node in nodes if isinstance(node, ast.JoinedStr) for piece in node.values}
     texts = {filled(node) for node in nodes if id(node) not in docstrings | pieces}
-    shown = {filled(node.args[PLACES[called(node)]]) for node in nodes if called(node) in PLACES}
+    constants = {line.targets[0].id: line.value for line in tree.body if is_constant(line)}
+    arguments = [node.args[PLACES[called(node)]] for node in nodes if called(node) in PLACES]
+    shown = {filled(constants.get(getattr(node, "id", ""), node)) for node in arguments}
     inside = [node for whole in nodes if getattr(whole, "name", "") in SHOWN for node in ast.walk(whole)]
     shown |= {filled(node) for node in inside if isinstance(node, ast.JoinedStr)}
     return {text for text in texts if " " in text and text.endswith(".")} | shown
@@ -36,6 +38,10 @@ def texts_of(tree):
 
 def is_told(statement):
     return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+
+
+def is_constant(line):
+    return isinstance(line, ast.Assign) and isinstance(line.targets[0], ast.Name)
 
 
 def called(node):
@@ -71,6 +77,7 @@ def test_the_sentences_are_found():
         "Level {} does not exist; this shape has levels 0 to {}.",  # with values
         "{} was analyzed and keeps its own parts; Register Selected gives it those of {}.",  # filled in later
         "Computing eigenfunctions",  # what a job is doing
+        "Searching order and signs",  # a constant
     } <= sentences_of_source()
 
 

@@ -5,7 +5,7 @@ from tests.window.conftest import labels, unfold
 SETTINGS = "bpy.context.object.data.eigenparts"
 IS_PICKING = "bpy.context.window_manager.eigenparts.is_picking"
 # On the humanoid, seen from the front.
-PLACES = {"hand": (0.7, -0.02, 1.3), "head": (0.0, -0.1, 1.65), "belly": (0.0, -0.1, 1.05)}
+PLACES = {"hand": (0.7, -0.02, 1.3), "belly": (0.0, -0.1, 1.05), "head": (0.0, -0.1, 1.65)}
 
 
 def part_at(window, place):
@@ -34,7 +34,7 @@ def test_each_click_makes_a_part_active_until_escape(pair, show):
     show("picked")
     pair.press("ESC")
     pair.wait_for(f"not {IS_PICKING}")
-    pair.click(*pair.place(PLACES["head"]))
+    pair.click(*pair.place(PLACES["hand"]))
     pair.settle()
     assert pair.value(f"{SETTINGS}.active_part") == picked[-1]
 
@@ -47,6 +47,13 @@ def test_the_view_can_be_turned_while_parts_are_picked(pair):
     pair.press("RIGHTMOUSE")
     pair.wait_for(f"not {IS_PICKING}")
     assert pair.value("bpy.context.object.mode") == "OBJECT"
+
+
+def test_picking_ends_when_a_file_is_loaded(pair):
+    start_picking(pair)
+    path = pair.folder / "pair.blend"
+    pair.run(f"bpy.ops.wm.open_mainfile(filepath={str(path)!r}, load_ui=False)")
+    pair.wait_for(f"not {IS_PICKING}")
 
 
 def test_the_last_division_is_changed_in_its_panel(pair):

@@ -192,6 +192,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "Measuring the functions": "Die Funktionen vermessen",
     "Computing functions": "Funktionen berechnen",
     "Matching": "Zuordnen",
+    "Searching order and signs": "Reihenfolge und Vorzeichen suchen",
     "Mapping functions": "Funktionen abbilden",
     "Comparing the faces": "Die Flächen vergleichen",
     "Finding the nearest points": "Die nächsten Punkte finden",
