@@ -68,13 +68,13 @@ def _solved(
         if np.count_nonzero(is_own) < LEAST_TRIANGLES:
             continue
         told = section(progress, number / n_shells, (number + 1) / n_shells)
-        yield corners[is_own].reshape(-1, 3), _attempt(partial(solve, _alone(surface, is_own), progress=told))
+        yield corners[is_own].reshape(-1, 3), _attempt(partial(solve, progress=told), surface, is_own)
 
 
-def _attempt(solve: Callable[[], ChosenField]) -> ChosenField | EngineError:
-    """Return a field, or what is wrong with its shell: others may have one all the same."""
+def _attempt(solve: Callable[[Surface], ChosenField], surface: Surface, is_own: Bools) -> ChosenField | EngineError:
+    """Return the field of a shell, or what is wrong with it: others may have one all the same."""
     try:
-        return solve()
+        return solve(_alone(surface, is_own))
     except EngineError as error:
         return error
 

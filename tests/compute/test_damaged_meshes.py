@@ -57,6 +57,20 @@ def test_there_is_a_division_or_a_sentence(shape, steps, seed, exponent):
         np.testing.assert_array_equal(first.segment().labels, second.segment().labels)
 
 
+@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(shapes=st.lists(st.tuples(st.sampled_from(sorted(SHAPES)), steps, seeds), min_size=2, max_size=3))
+def test_there_is_a_division_of_each_loose_part_or_a_sentence(shapes):
+    with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
+        pieces = [damaged(shape, its_steps, seed) for shape, its_steps, seed in shapes]
+    places = [vertices + np.array([9.0 * k, 0, 0]) for k, (vertices, _) in enumerate(pieces)]
+    first = np.cumsum([0, *map(len, places)])
+    triangles = [faces + start for (_, faces), start in zip(pieces, first, strict=False)]
+    try:
+        check(analyze(TriangleMesh(np.vstack(places), np.vstack(triangles)), order=1, shells="separate"))
+    except EngineError as refusal:
+        assert str(refusal).endswith(".")  # noqa: PT017 - a refusal is as good
+
+
 @pytest.mark.parametrize("damage", ["delete_faces", "flip_faces", "merge_vertices"])
 def test_most_broken_meshes_are_divided_all_the_same(damage):
     rng = np.random.default_rng(0)
