@@ -65,7 +65,8 @@ def test_two_characters_get_the_same_parts(window, hand, take):
 def test_a_pose_with_other_faces_gets_the_same_parts_in_the_same_places(pair, humanoid, walker, show):
     select(pair, "humanoid walk", "humanoid rest")
     choose(pair, "register selected")
-    pair.wait_for("'part' in bpy.data.objects['humanoid walk'].data.attributes")
+    # Seconds; on a busy machine, matching by shape takes a while.
+    pair.wait_for("'part' in bpy.data.objects['humanoid walk'].data.attributes", 400.0)
     unfold(pair, "Level", "Parts", "Register")
     show("registered")
     expected = np.array(labels(pair))[nearest_quads(humanoid, walker)]
