@@ -19,6 +19,7 @@ from tests.docs.pages import (
     python_blocks,
     texts,
 )
+from tools.bench import BENCHMARKS
 
 every_page = pytest.mark.parametrize("page", PAGES, ids=name_of)
 every_page_of_the_guide = pytest.mark.parametrize("page", GUIDE, ids=name_of)
@@ -124,3 +125,11 @@ def test_the_sentences_of_troubleshooting_are_those_of_the_code():
 def test_what_the_guide_tells_to_press_is_in_the_window(page):
     bold = set(re.findall(r"\*\*([^*]+)\*\*", prose(page)))
     assert sorted(bold - texts("operators", "ui")) == []
+
+
+def test_every_benchmark_is_on_its_page_and_run_by_the_tool():
+    rows = re.findall(r"^\| `benchmarks/(\w+)\.py` \|", (ROOT / "docs/benchmarks.md").read_text(), re.MULTILINE)
+    scripts = {path.stem for path in (ROOT / "benchmarks").glob("*.py") if "parse_args(" in path.read_text()}
+    assert sorted(rows) == sorted(scripts)
+    # This one wants a zip and a real window.
+    assert set(BENCHMARKS) == scripts - {"responsiveness"}

@@ -87,9 +87,10 @@ class Family:
 
 def draw(name: str, target: Path) -> None:
     """Write the sheet of a character: levels below each other, poses side by side."""
-    rows = [_row(name, level) for level in LEVELS]
-    titles = [f"{level}\n{_told(name, level)}" for level in LEVELS]
-    sheet(rows, titles, [_titles(name)]).save(target)
+    # Where the default level has all features, the fine one is the same again.
+    told = {_told(name, level): level for level in reversed(LEVELS)}
+    titles = [f"{level}\n{numbers}" for numbers, level in reversed(told.items())]
+    sheet([_row(name, level) for level in reversed(told.values())], titles, [_titles(name)]).save(target)
 
 
 def draw_registered(target: Path) -> None:

@@ -25,8 +25,8 @@ WIDTH, HEIGHT = 720, 560
 BODY, BODY_PLACE = (520, 500), (-10, -8)
 # Of the enlarged hand: middle and radius.
 LENS, LENS_RADIUS = (548, 196), 138
-# Of the slider: left and right end, and height; what is passed and what is not.
-TRACK = (40, 680, 530)
+# Of the slider: left end, right end and height, half of the strip it lies in; what is passed and what is not.
+TRACK, HALF = (40, 680, 530), 16
 ACCENT, RAIL = (51, 153, 255), (205, 208, 212)
 # Frames from one level to the next, how long each is shown and how long a level, the first and the last rest.
 N_BETWEEN, STEP_TIME, REST_TIME, END_TIME = 3, 40, 520, 1900
@@ -120,7 +120,7 @@ def _with_slider(step: Step, place: float, finest: int) -> Image.Image:
     left, right, height = TRACK
     stops = [left + (right - left) * level / finest for level in range(finest + 1)]
     handle = left + (right - left) * place / finest
-    with fine_lines(drawn, (0, height - 16, WIDTH, height + 16)) as lines:
+    with fine_lines(drawn, (0, height - HALF, WIDTH, height + HALF)) as lines:
         _line(lines, left, right, 2.5, RAIL)
         _line(lines, left, handle, 2.5, ACCENT)
         for stop in stops:
@@ -134,9 +134,9 @@ def _with_slider(step: Step, place: float, finest: int) -> Image.Image:
 
 
 def _line(lines: ImageDraw.ImageDraw, start: float, end: float, half: float, ink: tuple[int, int, int]) -> None:
-    box = (start, 16 - half, end, 16 + half)
+    box = (start, HALF - half, end, HALF + half)
     lines.rounded_rectangle([FINENESS * value for value in box], FINENESS * half, fill=ink)
 
 
 def _disc(lines: ImageDraw.ImageDraw, middle: float, radius: float, ink: tuple[int, int, int]) -> None:
-    lines.ellipse([FINENESS * v for v in (middle - radius, 16 - radius, middle + radius, 16 + radius)], fill=ink)
+    lines.ellipse([FINENESS * v for v in (middle - radius, HALF - radius, middle + radius, HALF + radius)], fill=ink)

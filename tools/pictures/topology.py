@@ -15,9 +15,8 @@ from tools.pictures.lettering import sheet
 from tools.pictures.shots import shot
 from tools.render import MATERIAL, View
 
-# Linear RGB of bodies that show no parts, light enough for all colours of the complex.
+# Linear RGB of bodies that show no parts, between the white and the dark of the complex.
 CLAY = (0.3, 0.31, 0.33, 1.0)
-FINE = 1e-3
 # Times the usual thickness of lines and dots.
 THICKNESS = 2.0
 # Colours of the field from its least to its greatest value, in sRGB; each band is one colour.
