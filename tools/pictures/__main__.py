@@ -42,7 +42,6 @@ PICTURES: dict[str, Callable[[Path], None]] = {
 }
 # Those of other meshes.
 PICTURES_OF_DATA: dict[str, Callable[[Path, Path], None]] = {
-    "skeleton_meshes.png": skeletons.draw_meshes,
     "transfer_fox_wolf.png": transferred.draw_kin,
 }
 

@@ -14,11 +14,12 @@ from tools.pictures.moving import Frame, write_gif
 from tools.pictures.shots import shot
 from tools.render import View, world_positions
 
-POSES = ("walk", "wave", "arms_up", "sit")
-N_BETWEEN = 5
-STEP_TIME, REST_TIME = 80, 700
+POSES = ("walk", "wave", "arms_up", "sit", "reach")
+# Frames from one pose to the next; each costs a registration.
+N_BETWEEN = 0
+STEP_TIME, REST_TIME = 80, 1000
 # The one whose parts all have, at rest, and the one that is shown, each with a triangulation of its own.
-N_REFERENCE, N_SHOWN = 5000, 6500
+N_REFERENCE, N_SHOWN = 5000, 5500
 # The coarse one beside it has this share of the faces.
 COARSE = 0.2
 SPACING = 1.15
@@ -34,6 +35,7 @@ def draw(target: Path) -> None:
     reference = prepare_reference(analysis, analysis.segment(mode="nested"))
     confidence = [_take_parts(reference, obj) for obj in (*fine, *coarse)]
     sys.stdout.write(f"Least confidence of {len(confidence)} meshes: {min(confidence):.2f}\n")
+    sys.stdout.flush()
     for obj in coarse:
         obj.data.shade_flat()
         obj.location.x += SPACING
@@ -51,7 +53,7 @@ def _frames(fine: list[bpy.types.Object], coarse: list[bpy.types.Object]) -> lis
     """Return a picture of each pair, all from the same place."""
     bpy.context.view_layer.update()
     framed = np.concatenate([world_positions(obj) for obj in (*fine, *coarse)])
-    view = View(azimuth=16, width=WIDTH, height=HEIGHT, samples=16, framed=framed)
+    view = View(azimuth=16, width=WIDTH, height=HEIGHT, samples=12, framed=framed)
     frames = []
     for number, pair in enumerate(zip(fine, coarse, strict=True)):
         frames.append(Frame(shot(pair, view), STEP_TIME if number % (N_BETWEEN + 1) else REST_TIME))

@@ -9,7 +9,6 @@ from eigenparts.cli.quiet import blender_is_quiet as quiet
 from mathutils import Matrix
 
 from examples import humanoid
-from tools.pictures import meshes
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, select, standing
 from tools.pictures.gallery import SUBJECTS, added
@@ -37,16 +36,6 @@ def draw_examples(target: Path) -> None:
         obj = added(subject.mesh("rest"))
         images.append(shot([obj], subject.view, bone_objects(_rigged(obj))))
     sheet([images]).save(target)
-
-
-def draw_meshes(target: Path, data: Path) -> None:
-    """Write meshes from elsewhere with their armatures."""
-    images = []
-    for mesh in meshes.MESHES.values():
-        obj = meshes.added(mesh, data)
-        images.append(shot([obj], mesh.view, bone_objects(_rigged(obj))))
-    half = -(-len(images) // 2)
-    sheet([images[:half], images[half:]]).save(target)
 
 
 def draw_posed(target: Path) -> None:

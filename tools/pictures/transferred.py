@@ -12,7 +12,6 @@ from compute import Correspondence, TriangleMesh, analyze, correspond
 from examples import Character, humanoid
 from tools.pictures.characters import add_mesh, paint, paint_faces, standing
 from tools.pictures.lettering import sheet
-from tools.pictures.meshes import upright
 from tools.pictures.shots import shot
 from tools.render import View
 
@@ -21,6 +20,8 @@ POSES = {"rest": 10000, "walk": 7000, "sit": 12000, "reach": 8500}
 # Bones whose weights are shown together, and linear RGB of no and full weight.
 BONES = ("upper_arm.L", "upper_arm.R", "thigh.L", "thigh.R", "spine")
 NONE, FULL = np.array([0.6, 0.63, 0.68, 1.0]), np.array([0.7, 0.03, 0.03, 1.0])
+# Files in which y is up.
+Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 FOX, WOLF = "khronos-fox/fox_0_rest.off", "quaternius-animals/wolf_0_rest.off"
 
 
@@ -42,10 +43,7 @@ def draw_weights(target: Path) -> None:
 
 def draw_kin(target: Path, data: Path) -> None:
     """Write the parts of a fox, and what a wolf gets."""
-    fox, wolf = (
-        TriangleMesh(upright(mesh.vertices), mesh.triangles)
-        for mesh in (read_mesh(data / name) for name in (FOX, WOLF))
-    )
+    fox, wolf = (_upright(read_mesh(data / name)) for name in (FOX, WOLF))
     analysis = analyze(fox)
     parts = analysis.segment(mode="nested").labels
     carried = [parts, correspond(analysis, analyze(wolf)).transfer_faces(parts)]
@@ -66,6 +64,13 @@ def _posed() -> list[TriangleMesh]:
 def _found() -> list[Correspondence]:
     source, *others = (analyze(mesh) for mesh in _posed())
     return [correspond(source, other) for other in others]
+
+
+def _upright(mesh: TriangleMesh) -> TriangleMesh:
+    """Return a mesh with z up, on the ground, its largest extent 1."""
+    turned = mesh.vertices @ Y_UP.T
+    turned = turned / np.ptp(turned, axis=0).max()
+    return TriangleMesh(turned - [0, 0, turned[:, 2].min()], mesh.triangles)
 
 
 def _titles() -> list[str]:
