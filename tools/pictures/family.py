@@ -1,4 +1,4 @@
-"""A registered family: a character moves, every frame is a mesh of its own, and its parts keep their colours."""
+"""A registered family: a character takes poses, each a mesh of its own, and its parts keep their colours."""
 
 import sys
 from pathlib import Path
