@@ -16,8 +16,8 @@ from tools.render import View, world_positions
 
 POSES = ("walk", "wave", "arms_up", "sit", "reach")
 # Frames from one pose to the next; each costs a registration.
-N_BETWEEN = 0
-STEP_TIME, REST_TIME = 80, 1000
+N_BETWEEN = 1
+STEP_TIME, REST_TIME = 160, 900
 # The one whose parts all have, at rest, and the one that is shown, each with a triangulation of its own.
 N_REFERENCE, N_SHOWN = 5000, 5500
 # The coarse one beside it has this share of the faces.
