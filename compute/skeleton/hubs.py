@@ -43,15 +43,41 @@ def gathered_hubs(chains: list[Chain], tips: set[int], slices: Slices, centres: 
         Of the slices in each pose.
     """
     nodes = sorted({end for chain in chains for end in (chain.start, chain.end)} - tips)
-    hubs = [_hub_at(frozenset([node]), chains, slices, centres) for node in nodes]
-    inner = [chain for chain in chains if chain.start not in tips and chain.end not in tips]
+    around = _chains_around(chains)
+    alone = [_hub_at(frozenset([node]), around, slices, centres) for node in nodes]
+    number = {node: place for place, node in enumerate(nodes)}
+    inner = [(number[chain.start], number[chain.end]) for chain in chains if not {chain.start, chain.end} & tips]
+    hub = _gathered(alone, np.array(inner, dtype=np.int64).reshape(-1, 2))
+    gathered: dict[int, set[int]] = {}
+    for node, first in zip(nodes, hub.tolist(), strict=True):
+        gathered.setdefault(first, set()).add(node)
+    return [_hub_at(frozenset(together), around, slices, centres) for together in gathered.values()]
+
+
+def _gathered(alone: list[Hub], inner: Ints) -> Ints:
+    """Unite the two nearest ends of a chain as long as they are close; return for each node the first of its hub.
+
+    Parameters
+    ----------
+    alone : list of Hub
+        One for each node.
+    inner : (E, 2) int64
+        The two nodes of each chain between nodes.
+    """
+    hub = np.arange(len(alone))
+    places = np.array([node.places[0] for node in alone]).reshape(-1, 3)
+    radius, n_nodes = np.array([node.radius for node in alone]), np.ones(len(alone))
     while True:
-        pairs = {frozenset(_hub_numbers(hubs, chain)) for chain in inner}
-        close = [(_closeness(hubs, *sorted(pair)), sorted(pair)) for pair in pairs if len(pair) == 2]
-        if not close or min(close)[0] >= CLOSE:
-            return [_hub_at(hub.nodes, chains, slices, centres) for hub in hubs]
-        first, second = min(close)[1]
-        hubs = [*(hub for i, hub in enumerate(hubs) if i not in (first, second)), _united(hubs[first], hubs[second])]
+        ends = hub[inner]
+        ends = np.sort(ends[ends[:, 0] != ends[:, 1]], axis=1)
+        distance = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
+        closeness = distance / radius[ends].max(axis=1, initial=0)
+        if not len(ends) or closeness.min() >= CLOSE:
+            return hub
+        first, second = ends[closeness.argmin()]
+        places[first] = np.average(places[[first, second]], axis=0, weights=n_nodes[[first, second]])
+        radius[first], n_nodes[first] = max(radius[first], radius[second]), n_nodes[first] + n_nodes[second]
+        hub[hub == second] = first
 
 
 def joined_hubs(
@@ -75,7 +101,8 @@ def joined_hubs(
     for chain in joints:
         united = hub_of[chain.start] | hub_of[chain.end]
         hub_of.update(dict.fromkeys(united, united))
-    return [_hub_at(hub, chains, slices, centres) for hub in sorted(set(hub_of.values()), key=min)]
+    around = _chains_around(chains)
+    return [_hub_at(hub, around, slices, centres) for hub in sorted(set(hub_of.values()), key=min)]
 
 
 def hub_number(hubs: list[Hub], node: int) -> int:
@@ -83,28 +110,23 @@ def hub_number(hubs: list[Hub], node: int) -> int:
     return next((number for number, hub in enumerate(hubs) if node in hub.nodes), -1)
 
 
-def _hub_numbers(hubs: list[Hub], chain: Chain) -> tuple[int, int]:
-    return hub_number(hubs, chain.start), hub_number(hubs, chain.end)
+def _chains_around(chains: list[Chain]) -> dict[int, list[Chain]]:
+    """Return the chains that begin or end at each node, in their order."""
+    around: dict[int, list[Chain]] = {}
+    for chain in chains:
+        for node in {chain.start, chain.end}:
+            around.setdefault(node, []).append(chain)
+    return around
 
 
-def _hub_at(nodes: frozenset[int], chains: list[Chain], slices: Slices, centres: Floats) -> Hub:
+def _hub_at(nodes: frozenset[int], around: dict[int, list[Chain]], slices: Slices, centres: Floats) -> Hub:
     """Return a hub in the middle of the level sets that lead away from some nodes, wide ones counting more."""
+    touching = [chain for node in sorted(nodes) for chain in around[node]]
     # Chains between the nodes lie askew; a ring at a single node has two ends there.
-    leaving = [chain for chain in chains if chain.start == chain.end or not {chain.start, chain.end} <= nodes]
-    leaving = leaving if any(nodes & {chain.start, chain.end} for chain in leaving) else chains
+    leaving = [chain for chain in touching if chain.start == chain.end or not {chain.start, chain.end} <= nodes]
+    leaving = leaving or touching
     starts = [chain.slices[0] for chain in leaving if chain.start in nodes]
     ends: Ints = np.array(starts + [chain.slices[-1] for chain in leaving if chain.end in nodes], dtype=np.int64)
     girth = slices.girth[ends]
     places = np.einsum("s,psd->pd", girth, centres[:, ends]) / girth.sum()
     return Hub(nodes, places, float(slices.radius[ends].max()))
-
-
-def _closeness(hubs: list[Hub], first: int, second: int) -> float:
-    distance = np.linalg.norm(hubs[first].places[0] - hubs[second].places[0])
-    return float(distance / max(hubs[first].radius, hubs[second].radius))
-
-
-def _united(first: Hub, second: Hub) -> Hub:
-    n_first, n_second = len(first.nodes), len(second.nodes)
-    places = (n_first * first.places + n_second * second.places) / (n_first + n_second)
-    return Hub(first.nodes | second.nodes, places, max(first.radius, second.radius))
