@@ -16,14 +16,14 @@ from tools.render import View, world_positions
 
 POSES = ("walk", "wave", "arms_up", "sit", "reach")
 # Frames from one pose to the next; each costs a registration.
-N_BETWEEN = 1
+N_BETWEEN = 3
 STEP_TIME, REST_TIME = 160, 900
 # The one whose parts all have, at rest, and the one that is shown, each with a triangulation of its own.
-N_REFERENCE, N_SHOWN = 5000, 5500
+N_REFERENCE, N_SHOWN = 6000, 8000
 # The coarse one beside it has this share of the faces.
-COARSE = 0.2
-SPACING = 1.15
-WIDTH, HEIGHT = 560, 440
+COARSE = 0.4
+SPACING = 1.6
+WIDTH, HEIGHT = 640, 440
 
 
 def draw(target: Path) -> None:
