@@ -32,6 +32,7 @@ def main() -> int:
     command = [sys.executable, "-m", "pytest", "-q", "-rs", "tests/window"]
     code = subprocess.run(command, cwd=ROOT, env={**os.environ, "EIGENPARTS_PACKAGE": str(archive)}).returncode
     if folder is not None and code == 0:
+        folder.mkdir(parents=True, exist_ok=True)
         for picture in (ROOT / "demo" / "window").glob("window_*.png"):
             shutil.copy(picture, folder)
     return code
