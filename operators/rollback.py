@@ -70,7 +70,7 @@ def nothing_left_behind(context: bpy.types.Context) -> Iterator[None]:
             bpy.ops.object.mode_set(mode="OBJECT")
         bpy.data.batch_remove([block for block in _blocks() if block.session_uid not in before])
         context.view_layer.objects.active = active
-        for obj in context.view_layer.objects:
+        for obj in list(context.view_layer.objects):
             obj.select_set(obj in selected)
         raise
 
