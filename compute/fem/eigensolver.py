@@ -68,10 +68,6 @@ class EigenProblem:
         space = function_space(self.space.mesh, 1)
         return EigenProblem(space, self.is_free[: space.n_unknowns], self.metric, self.leaves)
 
-    def element_matrices(self) -> tuple[Floats, Floats]:
-        """Return (T, n, n) stiffness and mass of each triangle."""
-        return element_stiffness(self.metric, self.space.element), element_mass(self.metric, self.space.element)
-
     @cached_property
     def elimination_order(self) -> Ints:
         """The free unknowns; if the leaves are known, in an order of elimination that keeps factors sparse."""

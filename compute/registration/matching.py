@@ -68,11 +68,6 @@ class Matching:
         """(ks,) +1 or -1, the sign with which it is that function."""
         return rounded(self.map)[1]
 
-    @cached_property
-    def purity(self) -> Floats:
-        """(ks,) how much of each function is that one function, from 0 to 1; the rest is mixed from its neighbours."""
-        return np.abs(self.map[self.order, np.arange(len(self.order))])
-
 
 def match(
     source: Analysis,
