@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 
 from . import exchange, layers, state
-from .layers import STORAGES, Layer
+from .attribute_values import STORAGES, read_attribute
+from .layers import Layer
 from .refusals import Refusal
 from .results import PART, read_labels
 
@@ -161,11 +162,3 @@ def _kind_of(attribute: bpy.types.Attribute) -> str:
     if attribute.domain == "CORNER":
         return "UVS" if attribute.data_type == "FLOAT2" else ""
     return {"POINT": "ATTRIBUTES", "FACE": "FACES"}.get(attribute.domain, "")
-
-
-def read_attribute(attribute: bpy.types.Attribute) -> np.ndarray:
-    """Return the (n, components) values of an attribute."""
-    storage = STORAGES[attribute.data_type]
-    values = np.empty(len(attribute.data) * storage.n_components, dtype=storage.dtype)
-    attribute.data.foreach_get(storage.property_name, values)
-    return values.reshape(-1, storage.n_components)

@@ -6,8 +6,9 @@ from contextlib import contextmanager
 import bpy
 
 from . import layers
-from .layer_reading import read_attribute, read_key, read_weights
-from .layer_writing import fill_group, store_values
+from .attribute_values import read_attribute, store_values
+from .layer_reading import read_key, read_weights
+from .layer_writing import fill_group
 from .layers import Layer
 from .rollback import all_or_nothing
 

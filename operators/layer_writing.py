@@ -6,9 +6,10 @@ import bpy
 import numpy as np
 
 from . import corner_colours, engine, exchange, layers, state
+from .attribute_values import read_attribute, store_values
 from .division import Division
-from .layer_reading import ABSOLUTE, read_attribute, read_key, read_weights
-from .layers import STORAGES, Layer
+from .layer_reading import ABSOLUTE, read_key, read_weights
+from .layers import Layer
 from .refusals import Refusal, in_name_of
 from .results import PART
 
@@ -191,12 +192,6 @@ def _new_attribute(mesh: bpy.types.Mesh, layer: Layer) -> bpy.types.Attribute:
         mesh.uv_layers.new(name=layer.name)
         return mesh.attributes[layer.name]
     return mesh.attributes.new(layer.name, layer.data_type, layer.kind)
-
-
-def store_values(attribute: bpy.types.Attribute, values: np.ndarray) -> None:
-    """Write the (n, components) values of an attribute."""
-    storage = STORAGES[attribute.data_type]
-    attribute.data.foreach_set(storage.property_name, np.ascontiguousarray(values, dtype=storage.dtype).ravel())
 
 
 def _spread(mesh: bpy.types.Mesh, domain: str, share: np.ndarray) -> np.ndarray:

@@ -4,31 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .attribute_values import STORAGES
+
 GROUP, POINT, FACE, CORNER, SHAPE_KEY, MATERIAL, PARTS = (
     "GROUP", "POINT", "FACE", "CORNER", "SHAPE_KEY", "MATERIAL", "PARTS",
 )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Storage:
-    """How Blender keeps one kind of attribute: the property, its numbers, and whether values can be blended."""
-
-    property_name: str
-    n_components: int
-    dtype: type
-    can_blend: bool
-
-
-STORAGES = {
-    "FLOAT": Storage("value", 1, np.float32, True),
-    "INT": Storage("value", 1, np.int32, False),
-    "INT8": Storage("value", 1, np.int32, False),
-    "BOOLEAN": Storage("value", 1, np.bool_, False),
-    "FLOAT2": Storage("vector", 2, np.float32, True),
-    "FLOAT_VECTOR": Storage("vector", 3, np.float32, True),
-    "FLOAT_COLOR": Storage("color", 4, np.float32, True),
-    "BYTE_COLOR": Storage("color", 4, np.float32, True),
-}
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,9 @@ import bpy
 import numpy as np
 
 from . import material_slots, outputs, vertex_groups
+from .attribute_values import STORAGES, read_attribute, store_values
 from .division import PART
 from .exchange import own_names, remove_own_attributes
-from .layers import STORAGES
 from .soundness import lie_within
 from .state import MOST_LABELS, STATE
 
@@ -125,7 +125,11 @@ class _Kept:
         names = {*own_names(mesh), material_slots.MATERIAL_INDEX}
         present = [attribute for attribute in mesh.attributes if attribute.name in names]
         return cls(
-            {attribute.name: _values(attribute) for attribute in present if attribute.data_type in STORAGES},
+            {
+                attribute.name: (attribute.data_type, attribute.domain, read_attribute(attribute))
+                for attribute in present
+                if attribute.data_type in STORAGES
+            },
             {name: _plain(mesh[name]) for name in _own_properties(mesh)},
             {name: _rows(mesh, name, fields) for name, fields in LISTS.items()},
             mesh.color_attributes.active_color_name,
@@ -148,9 +152,10 @@ class _Kept:
         mesh.color_attributes.active_color_name = self.active_colour
         for name, fields in LISTS.items():
             _restore_rows(mesh, name, fields, self.rows[name])
-        labels = self.attributes.get(PART.name, (None, None, None))[2]
-        if labels is not None and STATE in self.properties and lie_within(labels, 0, MOST_LABELS):
-            outputs.write(mesh, labels, outputs.COMPOUND)
+        if PART.name in self.attributes and STATE in self.properties:
+            labels = self.attributes[PART.name][2].ravel()
+            if lie_within(labels, 0, MOST_LABELS):
+                outputs.write(mesh, labels, outputs.COMPOUND)
         mesh.update()
 
 
@@ -160,13 +165,6 @@ def _own_properties(mesh: bpy.types.Mesh) -> list[str]:
 
 def _plain(value: Any) -> Any:
     return value.to_dict() if hasattr(value, "to_dict") else value
-
-
-def _values(attribute: bpy.types.Attribute) -> tuple[str, str, np.ndarray]:
-    storage = STORAGES[attribute.data_type]
-    values = np.empty(storage.n_components * len(attribute.data), dtype=storage.dtype)
-    attribute.data.foreach_get(storage.property_name, values)
-    return attribute.data_type, attribute.domain, values
 
 
 def _rows(mesh: bpy.types.Mesh, name: str, fields: tuple[str, ...]) -> list[tuple[Any, ...]]:
@@ -181,7 +179,7 @@ def _restore_attribute(mesh: bpy.types.Mesh, name: str, data_type: str, domain: 
         mesh.attributes.remove(present)
     if name not in mesh.attributes:
         mesh.attributes.new(name, type=data_type, domain=domain)
-    mesh.attributes[name].data.foreach_set(STORAGES[data_type].property_name, values)
+    store_values(mesh.attributes[name], values)
 
 
 def _restore_property(mesh: bpy.types.Mesh, name: str, kept: dict[str, Any]) -> None:
