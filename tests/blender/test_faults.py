@@ -1,107 +1,20 @@
-"""Whatever fails while meshes are written, they keep what they had; whatever ends a job, nothing is written."""
+"""Whatever fails while meshes are written, they keep what they had."""
 
-import threading
 from contextlib import suppress
 
 import bpy
 import numpy as np
 import pytest
 
-from tests.blender.conftest import add_object, everything_on, values_of
+from tests.blender.conftest import add_object, values_of
 from tests.blender.drawn import draw_panels
-from tests.blender.test_background import wait_for
-
-STATE = "eigenparts_state"
-
-
-def all_of(mesh):
-    """Return everything on a mesh with the values in our state, and its faces."""
-    rows = [(row.part, row.share, row.n_faces) for row in mesh.eigenparts.rows]
-    state = repr(plain(mesh[STATE])) if STATE in mesh else None
-    corners = values_of(mesh, ".corner_vert").tobytes()
-    positions = values_of(mesh, "position", 3, np.float32, "vector").tobytes()
-    return everything_on(mesh), rows, state, corners, positions, groups_of(mesh), materials_of(mesh)
-
-
-def groups_of(mesh):
-    """Return the weights of each vertex group, by its name."""
-    obj = next(obj for obj in bpy.data.objects if obj.data == mesh)
-    names = {group.index: group.name for group in obj.vertex_groups}
-    weights = {name: {} for name in names.values()}
-    for vertex in mesh.vertices:
-        for element in vertex.groups:
-            weights[names[element.group]][vertex.index] = round(element.weight, 6)
-    return weights
-
-
-def materials_of(mesh):
-    """Return the names and colours of the slots, and of the material of each face."""
-    slots = [(slot.name, tuple(slot.diffuse_color)) if slot else None for slot in mesh.materials]
-    return slots, [polygon.material_index for polygon in mesh.polygons]
-
-
-def object_as_it_is(obj):
-    """Return where an object hangs, what modifies it, and its shape keys."""
-    keys = obj.data.shape_keys.key_blocks if obj.data.shape_keys else ()
-    shapes = {key.name: np.array([point.co for point in key.data]).tobytes() for key in keys}
-    where = tuple(map(tuple, obj.matrix_world)), obj.parent, [modifier.name for modifier in obj.modifiers]
-    return where, shapes, [layer.name for layer in obj.data.uv_layers]
-
-
-def blocks():
-    """Return the names of all objects and of what they could be made of."""
-    kinds = ("objects", "meshes", "armatures", "curves", "collections", "materials")
-    return {kind: sorted(block.name for block in getattr(bpy.data, kind)) for kind in kinds}
-
-
-def fails_at_every_call(monkeypatch, writer, call, unchanged, error=MemoryError):
-    """Let each call of a writer fail in turn, and look each time; return how many there were."""
-    for n in range(1, 1000):
-        with monkeypatch.context() as patch:
-            failing = fail_at(patch, writer, n, error)
-            with suppress(RuntimeError):
-                call()
-            if failing.n_calls < n:
-                return n - 1
-        unchanged()
-    raise AssertionError("it never ended")
-
-
-def plain(value):
-    if hasattr(value, "to_dict"):
-        return {name: plain(value[name]) for name in sorted(value.keys())}
-    return list(value) if hasattr(value, "typecode") else value
-
-
-class Failing:
-    """A function that raises when it is called for the n-th time, and counts."""
-
-    def __init__(self, function, n, error=MemoryError):
-        self.function, self.n, self.error, self.n_calls = function, n, error, 0
-
-    def __call__(self, *arguments, **options):
-        self.n_calls += 1
-        if self.n_calls == self.n:
-            raise self.error
-        return self.function(*arguments, **options)
-
+from tests.blender.failing import Failing, all_of, blocks, fail_at, fails_at_every_call, groups_of, object_as_it_is
 
 WRITERS = (
     *("state.write_attribute", "state.packed", "state.packed_array", "state.remove_own_attributes"),
     *("results.write_attribute", "vertex_map.write_attribute", "corner_colours.write_attribute"),
     *("part_table.number_parts", "results._list_parts", "function_hints.store"),
 )
-
-
-def fail_at(monkeypatch, name, n, error=MemoryError):
-    """Let the n-th call of a function of the operators fail, and return it."""
-    import eigenparts.operators as operators
-
-    module, function = name.split(".")
-    owner = getattr(operators, module)
-    failing = Failing(getattr(owner, function), n, error)
-    monkeypatch.setattr(owner, function, failing)
-    return failing
 
 
 @pytest.mark.parametrize("writer", WRITERS)
@@ -348,103 +261,3 @@ def test_a_mesh_that_blender_fails_to_bind_stays_unbound(full, monkeypatch):
     with pytest.raises(RuntimeError):
         bpy.ops.eigenparts.create_armature(order="1", weights="AUTOMATIC")
     assert (all_of(full.data), object_as_it_is(full), blocks()) == before
-
-
-def test_a_cancel_at_any_step_of_progress_changes_nothing(analyzed, monkeypatch):
-    """Through the operator: each report of progress in turn is where the user cancels."""
-    from eigenparts.operators import background, engine
-
-    before, n_steps = all_of(analyzed.data), 0
-    while True:
-        report = Failing(lambda fraction, text: None, n_steps + 1, engine.Cancelled)
-        monkeypatch.setattr(background, "_silent", report)
-        with suppress(RuntimeError):
-            bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=2, order="1")
-        if report.n_calls <= n_steps:
-            break
-        assert all_of(analyzed.data) == before
-        n_steps += 1
-    assert n_steps > 5
-
-
-@pytest.mark.parametrize("operator", ["create_armature", "register_selected", "transfer"])
-def test_a_cancelled_longer_job_changes_nothing(analyzed, star, monkeypatch, operator):
-    from eigenparts.operators import background, engine
-
-    other = add_object(1.1 * star.vertices, star.triangles, "other")
-    other.vertex_groups.new(name="group").add([0, 1], 1.0, "REPLACE")
-    bpy.context.view_layer.objects.active = other if operator == "transfer" else analyzed
-    before, names = [all_of(obj.data) for obj in (analyzed, other)], set(bpy.data.objects.keys())
-    for n in (1, 2):
-        report = Failing(lambda fraction, text: None, n, engine.Cancelled)
-        monkeypatch.setattr(background, "_silent", report)
-        options = {} if operator == "transfer" else {"order": "1"}
-        with pytest.raises(RuntimeError):
-            getattr(bpy.ops.eigenparts, operator)(**options)
-        assert report.n_calls >= n
-        assert [all_of(obj.data) for obj in (analyzed, other)] == before
-    assert set(bpy.data.objects.keys()) == names
-
-
-def test_out_of_memory_in_the_engine_changes_nothing(analyzed, monkeypatch):
-    from eigenparts.compute import analysis
-
-    before = all_of(analyzed.data)
-    with monkeypatch.context() as patch:
-        patch.setattr(analysis, "analyze", Failing(analysis.analyze, 1))
-        with pytest.raises(RuntimeError):
-            bpy.ops.eigenparts.analyze(order="1")
-    assert all_of(analyzed.data) == before
-
-
-def test_a_job_ends_with_the_file_it_was_started_in(extension, star_object):
-    """Loading a file makes Blender call ``cancel``; the thread stops at its next report."""
-    from eigenparts.operators import background
-
-    go_on, started, reached = threading.Event(), threading.Event(), []
-
-    def work(progress):
-        started.set()
-        go_on.wait(10)
-        progress(0.5, "Half way")
-        reached.append("the end")
-
-    job = background._start(work)
-    started.wait(10)
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    background.stop_running_job()
-    go_on.set()
-    wait_for(lambda: job.is_done)
-    assert (reached, background.is_running()) == ([], False)
-
-
-def test_a_result_for_a_file_that_is_gone_is_dropped(star_object, extension):
-    from eigenparts.operators import exchange, refusals
-    from eigenparts.operators.analyze import Ticket, find_mesh
-
-    ticket = Ticket(star_object.data.session_uid, exchange.fingerprint(star_object.data))
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    with pytest.raises(refusals.Refusal, match="deleted"):
-        find_mesh(ticket)
-
-
-def test_the_thread_of_a_job_does_not_keep_blender_open(extension):
-    from eigenparts.operators import job
-
-    go_on = threading.Event()
-    running = job.Job(lambda progress: go_on.wait(10))
-    assert all(thread.daemon for thread in threading.enumerate() if thread.name == "eigenparts")
-    go_on.set()
-    wait_for(lambda: running.is_done)
-
-
-def test_disabling_the_extension_stops_the_job(extension, star_object):
-    from eigenparts.operators import background
-
-    go_on = threading.Event()
-    job = background._start(lambda progress: go_on.wait(10))
-    extension.unregister()
-    assert job.is_cancelled
-    go_on.set()
-    extension.register()
-    assert not background.is_running()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.blender.conftest import add_object, values_of
-from tests.blender.test_faults import all_of
+from tests.blender.failing import all_of
 
 STACKS = {
     "mirror": ("MIRROR",),

@@ -8,7 +8,7 @@ import pytest
 
 from tests.blender.conftest import add_object, values_of
 from tests.blender.drawn import draw_panels
-from tests.blender.test_faults import all_of
+from tests.blender.failing import all_of
 
 QUICK = {
     "segment": {"level": 1},
