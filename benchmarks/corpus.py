@@ -155,6 +155,7 @@ def analyze(obj: Any) -> None:
 def every_level(obj: Any) -> None:
     """Show every level in both modes, and end at the default one."""
     import bpy
+
     from eigenparts.operators import state
 
     _select(obj)

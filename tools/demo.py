@@ -23,7 +23,6 @@ from eigenparts.cli import formats
 from eigenparts.cli.quiet import blender_is_quiet as quiet
 from eigenparts.operators import state
 from eigenparts.operators.refusals import Refusal
-
 from tools.render import render, side_by_side
 
 POSES = ("rest", "walk")

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from eigenparts.cli.quiet import blender_is_quiet as quiet
-from eigenparts.operators import palette, state
 from scipy.spatial import cKDTree
 
 from compute import TriangleMesh
+from eigenparts.cli.quiet import blender_is_quiet as quiet
+from eigenparts.operators import palette, state
 from examples import Bone, Character, Pose
 from examples.rig import bone_motions
 from examples.skinning import blend_skinning

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from eigenparts.cli.quiet import blender_is_quiet as quiet
 from PIL import Image
 
+from eigenparts.cli.quiet import blender_is_quiet as quiet
 from tools.render import View, light, paint_light, render
 
 

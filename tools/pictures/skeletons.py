@@ -5,9 +5,9 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from eigenparts.cli.quiet import blender_is_quiet as quiet
 from mathutils import Matrix
 
+from eigenparts.cli.quiet import blender_is_quiet as quiet
 from examples import humanoid
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, select, standing

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from eigenparts.cli.quiet import blender_is_quiet as quiet
 from mathutils import Color
 from PIL import Image
 
+from eigenparts.cli.quiet import blender_is_quiet as quiet
 from examples import handles, humanoid
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, level_of, segment, select, standing
