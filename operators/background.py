@@ -54,7 +54,7 @@ class BackgroundOperator:
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         if not self._job.is_done:
-            _show_progress(context, self._job)
+            _show_progress(context, type(self).bl_idname, self._job)
             return {"PASS_THROUGH"}
         self._leave(context)
         with errors_told(self):
@@ -101,13 +101,14 @@ def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
     return _running
 
 
-def _show_progress(context: bpy.types.Context, job: Job) -> None:
+def _show_progress(context: bpy.types.Context, operator: str, job: Job) -> None:
     status = context.window_manager.eigenparts
     text = in_language(job.text)
     shown = in_language(f"Eigenparts: {text} ({job.fraction:.0%}), ESC to cancel")
     if status.is_running and status.shown == shown:
         return
-    status.is_running, status.fraction, status.text, status.shown = True, job.fraction, text, shown
+    status.is_running, status.job = True, operator
+    status.fraction, status.text, status.shown = job.fraction, text, shown
     context.window_manager.progress_update(100 * job.fraction)
     context.workspace.status_text_set(shown)
     _redraw_sidebars(context)

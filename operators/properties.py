@@ -290,6 +290,7 @@ class EigenpartsJobStatus(bpy.types.PropertyGroup):
     """How far the running job is, for the panel, whether parts are being picked, and what went wrong last."""
 
     is_running: BoolProperty(options={"SKIP_SAVE"})
+    job: StringProperty(options={"SKIP_SAVE"})
     is_picking: BoolProperty(options={"SKIP_SAVE"})
     fraction: FloatProperty(options={"SKIP_SAVE"}, subtype="FACTOR", min=0, max=1)
     text: StringProperty(options={"SKIP_SAVE"})

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import FloatProperty, IntProperty
 
+from . import state
 from .fresh_analysis import FreshAnalysis
 from .palette import COMPLEX_COLOURS
 from .palette import COMPLEX_ROLE as ROLE
@@ -42,14 +43,16 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
     bl_label = "Trace Complex"
     bl_options = {"UNDO"}
 
-    level: IntProperty(name="Level", description="How many features to keep; -1 for the default", default=-1, min=-1)
+    level: IntProperty(
+        name="Level", description="How many features to keep; -1 for the level that the mesh shows", default=-1, min=-1
+    )
     thickness: FloatProperty(
         name="Thickness", description="How thick lines and dots are, as a multiple of the usual", default=1.0, min=0.01
     )
 
     def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
-        found = traced_complex(analysis, None if self.level < 0 else self.level)
         owner = context.scene.objects[name]
+        found = traced_complex(analysis, self.level if self.level >= 0 else shown_level(owner.data, analysis))
         size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
         with nothing_left_behind(context):
             lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in found.lines.items()}
@@ -63,6 +66,11 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
         n_dots = sum(len(places) for places in found.dots.values())
         tell(self, "INFO", f'{n_dots} critical points are in the collection "{collection.name}".')
         return {"FINISHED"}
+
+
+def shown_level(mesh: bpy.types.Mesh, analysis: Any) -> int | None:
+    """Return the level that a mesh shows, as far as the analysis has so many; None if it shows none."""
+    return min(state.summarize(mesh).level, analysis.hierarchy.n_levels - 1) if state.is_analyzed(mesh) else None
 
 
 def traced_complex(analysis: Any, level: int | None) -> TracedComplex:

@@ -24,7 +24,7 @@ class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.enabled = not status.is_running
         _draw_field(column, context.scene.eigenparts, active_mesh(context))
-        row = main_row(layout, context)
+        row = main_row(self, context)
         if row is not None:
             row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
             row.operator("eigenparts.clear", text="", icon="TRASH")

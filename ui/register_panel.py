@@ -17,7 +17,7 @@ class EIGENPARTS_PT_register(EigenpartsPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         draw_direction(layout, context)
-        row = main_row(layout, context)
+        row = main_row(self, context)
         if row is not None:
             row.operator("eigenparts.register_selected", icon="LINKED").mirrored = False
             row.operator("eigenparts.register_selected", text="", icon="MOD_MIRROR").mirrored = True

@@ -24,7 +24,7 @@ class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
         settings = context.scene.eigenparts_skeleton
         layout.prop(settings, "weights")
         layout.prop(settings, "bones_in_limbs")
-        row = main_row(layout, context)
+        row = main_row(self, context)
         if row is not None:
             row.operator("eigenparts.create_armature", icon="ARMATURE_DATA")
         layout.operator("eigenparts.create_skeleton_curves", text="Curves", icon="CURVE_DATA")

@@ -10,6 +10,16 @@ from ..operators.sentences import in_language
 NO_MESH = "Select a mesh object first."
 # Height of the button that a panel is there for, in rows.
 MAIN_BUTTON = 1.3
+# Where the progress of a job is drawn, by the operator that runs it; that of all others where analyses start.
+PANEL_OF_JOB = {
+    "eigenparts.register_selected": "EIGENPARTS_PT_register",
+    "eigenparts.next_alternative": "EIGENPARTS_PT_register",
+    "eigenparts.flip_function": "EIGENPARTS_PT_register",
+    "eigenparts.transfer": "EIGENPARTS_PT_transfer",
+    "eigenparts.create_armature": "EIGENPARTS_PT_skeleton",
+    "eigenparts.create_skeleton_curves": "EIGENPARTS_PT_skeleton",
+}
+ANALYZE_PANEL = "EIGENPARTS_PT_analyze"
 
 
 class EigenpartsPanel:
@@ -36,12 +46,12 @@ def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context
     layout.label(text=NO_MESH if active_mesh(context) is None else state.ABSENT)
 
 
-def main_row(layout: bpy.types.UILayout, context: bpy.types.Context) -> bpy.types.UILayout | None:
-    """Return the row of the button a panel is there for; None while a job runs, whose progress is drawn there."""
-    row = layout.row(align=True)
+def main_row(panel: bpy.types.Panel, context: bpy.types.Context) -> bpy.types.UILayout | None:
+    """Return the row of the button a panel is there for; None while its job runs, whose progress is drawn there."""
+    row = panel.layout.row(align=True)
     row.scale_y = MAIN_BUTTON
     status = context.window_manager.eigenparts
-    if not status.is_running:
+    if not status.is_running or PANEL_OF_JOB.get(status.job, ANALYZE_PANEL) != panel.bl_idname:
         return row
     row.progress(factor=status.fraction, text=status.text)
     row.operator("eigenparts.cancel", text="", icon="X")

@@ -27,7 +27,7 @@ class EIGENPARTS_PT_transfer(EigenpartsPanel, bpy.types.Panel):
             column.prop(options, "groups")
         if "GROUPS" in options.layers and options.groups == "NAMED":
             column.prop(options, "group_names")
-        row = main_row(layout, context)
+        row = main_row(self, context)
         if row is not None:
             row.operator("eigenparts.transfer", icon="MOD_DATA_TRANSFER")
 

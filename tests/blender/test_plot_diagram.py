@@ -69,6 +69,16 @@ def test_the_complex_in_the_scene_is_that_of_the_engine(star_object, analysis, l
     assert all(obj.parent == star_object for obj in parts.values())
 
 
+def test_the_complex_is_that_of_the_level_that_is_shown(star_object, analysis):
+    bpy.ops.eigenparts.analyze()
+    star_object.data.eigenparts.level = 1
+    bpy.ops.eigenparts.trace_complex()
+    maxima = next(o for o in bpy.data.collections["Complex of star"].objects if o["eigenparts_role"] == "maximum")
+    shown, default = (int((analysis.complex_at_level(level).critical_points.kind == 2).sum()) for level in (1, None))
+    assert len(maxima["places"]) == 3 * shown
+    assert shown < default
+
+
 def test_lines_lie_on_the_mesh(star_object):
     bpy.ops.eigenparts.trace_complex()
     for role in ("rising", "falling", "level"):

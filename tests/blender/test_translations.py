@@ -87,7 +87,7 @@ def test_the_texts_are_found(extension):
 
 
 # What Blender fills in or never shows, and collections, which are shown row by row.
-WITHOUT_TOOLTIP = {"rows", "correction_rows", "is_running", "is_picking", "fraction", "text", "shown", "problem"}
+WITHOUT_TOOLTIP = {"rows", "correction_rows", "is_running", "is_picking", "job", "fraction", "text", "shown", "problem"}
 
 
 def test_every_property_says_more_than_what_it_is_called(extension):

@@ -76,7 +76,7 @@ GERMAN: dict[str, str] = {
     "So many parts, the body included": "So viele Teile, der Körper mitgezählt",
     "All features that are high enough": "Alle Merkmale, die hoch genug sind",
     "How many features to keep": "Wie viele Merkmale bleiben",
-    "How many features to keep; -1 for the default": "Wie viele Merkmale bleiben; -1 für die übliche Zahl",
+    "How many features to keep; -1 for the level that the mesh shows": "Wie viele Merkmale bleiben; -1 für die Stufe, die das Mesh zeigt",
     "Threshold": "Schwelle",
     "Least height of a feature, as a fraction of the field's range": "Kleinste Höhe eines Merkmals, als Anteil am Bereich des Feldes",
     "How many parts, the body included": "Wie viele Teile, der Körper mitgezählt",
