@@ -3,12 +3,12 @@
 import numpy as np
 
 BODY = "a6a6a6"
-# Found by annealing among clear colours, without the dark and dull ones that shading makes muddy: the first 3, 6, 10, 14
-# and 19 with the body, and each and the one after it, as far apart as can be by CIEDE2000 in normal sight and under
+# Found by annealing among clear colours, without the dark and dull ones that shading makes muddy: the first 3, 6, 10,
+# 14 and 19 with the body, and each and the one after it, as far apart as can be by CIEDE2000 in normal sight and under
 # complete protanopia, deuteranopia and tritanopia (Machado et al. 2009).
 PARTS = (
-    *("e69f00", "3b82f6", "aa3377", "15803d", "d9f99d", "f5d0fe", "009e73", "4f46e5", "6ee7b7", "cc3311"),
-    *("3bc18b", "c882c2", "9cd06e", "c7aff5", "bc822e", "fedd4d", "f15e6c", "926cb9", "f9b9d1"),
+    *("e69f00", "3b82f6", "aa3377", "d9f99d", "15803d", "f5d0fe", "009e73", "4f46e5", "6ee7b7", "cc3311"),
+    *("3bc18b", "c882c2", "9cd06e", "c7aff5", "f15e6c", "f9b9d1", "926cb9", "fedd4d", "bc822e"),
 )
 
 
