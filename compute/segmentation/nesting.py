@@ -15,6 +15,8 @@ LEAST_AREA = 0.05
 # A feature is worth a part if it stands out: the least length²/area of its level sets is below this, area being what
 # they cut off, its tip left out. A hemisphere has 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
 BLUNT = 4.4
+# Beyond the default level, who asks for more features gets all that stand out more than a hemisphere.
+HEMISPHERE = 2 * np.pi
 
 
 def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> Bools:
@@ -22,7 +24,7 @@ def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> 
 
     Up to the default level every feature is cut off unless it is blunt, and so is what lies between two of its saddles
     (the torso between arms and legs), unless it is a thin shell or no neck shows where it ends. Beyond the default
-    level these parts stay, and smaller ones are cut off inside them (fingers in an arm).
+    level these parts stay, and smaller ones are cut off inside them (fingers in an arm) unless they are flat.
 
     Parameters
     ----------
@@ -36,7 +38,7 @@ def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> 
     is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)) & ~tree.is_shell, area)
     is_finer = tree.is_cut(level) & (tree.closing >= default_level)
     was_feature = tree.least_closing_inside > tree.closing
-    return is_cut | tree.is_shell | (is_finer & was_feature & (tree.roundness < BLUNT))
+    return is_cut | tree.is_shell | (is_finer & was_feature & (tree.roundness < HEMISPHERE))
 
 
 def numbered(tree: ArcTree, is_cut: Bools) -> Ints:

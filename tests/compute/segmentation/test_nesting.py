@@ -3,7 +3,7 @@ import itertools
 import numpy as np
 import pytest
 
-from compute import LevelError, analyze
+from compute import LevelError, TriangleMesh, analyze
 from examples import humanoid
 from tests.compute.test_analysis import n_pieces
 from tests.shapes import icosphere, star
@@ -53,6 +53,22 @@ def test_a_blunt_end_is_no_nested_part():
     level = analysis.hierarchy.n_levels - 1
     assert analysis.segment(level=level).n_parts >= 3
     assert analysis.segment(level=level, mode="nested").n_parts == 1
+
+
+@pytest.mark.parametrize(("height", "sharpness", "is_part"), [(0.3, 90, True), (0.4, 30, False)])
+def test_a_feature_of_a_finer_level_is_a_nested_part_if_it_stands_out_more_than_a_hemisphere(
+    height, sharpness, is_part
+):
+    """Two arms and a thorn or a hill: too small for the default level, and both would be too blunt there."""
+    ball = icosphere(4)
+    toward = ball.vertices @ np.transpose([(1, 0, 0), (-0.98, 0, 0.2), (0, 1, 0.1)])
+    radius = 1 + np.exp([25, 25, sharpness] * (toward - 1)) @ [2.5, 2.5, height]
+    analysis = analyze(TriangleMesh(ball.vertices * radius[:, None], ball.triangles))
+    default = analysis.hierarchy.default_level
+    coarse, fine = (analysis.segment(level=level, mode="nested") for level in (default, default + 1))
+    tip = np.argmax(ball.vertices[ball.triangles].mean(axis=1) @ [0, 1, 0.1])
+    size = [int((labels == labels[tip]).sum()) for labels in (coarse.labels, fine.labels)]
+    assert (size[1] < 0.1 * size[0]) == is_part
 
 
 def test_refuses_an_unknown_mode():
