@@ -17,6 +17,9 @@ from ..progress import Progress
 
 # The first look at the true residuals is worth taking when the recurrence promises this part of the tolerance.
 PROMISED = 0.1
+# The recurrence is asked first when the basis has this many times the number of pairs, next when it has grown by this
+# fraction, and from then on after this part of the steps that it would still take at the same pace.
+FIRST_LOOK, NEXT_LOOK, PACE = 2, 0.1, 0.7
 
 # Room for the basis: this many times the number of pairs, and as many blocks beyond that. Three times the pairs and
 # three blocks are usual.
@@ -80,18 +83,22 @@ def smallest_eigenpairs(
     capacity = MOST_COLUMNS * n_pairs + MOST_BLOCKS * width
     krylov = _Krylov(np.empty((capacity, n_rows)), np.zeros((capacity, capacity)))
     block, massive, _ = _orthonormal(start.T, pencil.mass)
-    promised = PROMISED * tolerance
+    promised, looks, look_at = PROMISED * tolerance, [], FIRST_LOOK * n_pairs
     while krylov.size + 2 * width <= capacity:
         block, massive, coupling = _extend(krylov, block, massive, pencil)
+        progress(min(krylov.size / (MOST_COLUMNS * n_pairs), 1.0), "Computing eigenfunctions")
+        if krylov.size < look_at:
+            continue
         inverse_values, coefficients = _ritz(krylov, n_pairs)
         worst = _promise(inverse_values, coefficients, coupling)
-        progress(float(np.clip(np.log(worst) / np.log(promised), 0, 1)), "Computing eigenfunctions")
         if worst <= promised:
             values = pencil.shift + 1 / inverse_values
             functions = krylov.rows[: krylov.size].T @ coefficients
             if _error(pencil, values, functions) <= tolerance:
                 return values, functions
             promised /= 3
+        looks.append((krylov.size, float(np.log(worst))))
+        look_at = _next_look(looks, float(np.log(promised)))
     raise SpectrumError("The eigenfunctions did not converge; look for slivers, or remesh the surface.")
 
 
@@ -138,6 +145,26 @@ def _promise(inverse_values: Floats, coefficients: Floats, coupling: Floats) -> 
     width = len(coupling)
     residuals = np.linalg.norm(coupling @ coefficients[-width:], axis=0)
     return float(np.max(residuals / inverse_values))
+
+
+def _next_look(looks: list[tuple[int, float]], goal: float) -> int:
+    """Return the size of the basis at which its Ritz values are worth computing again.
+
+    On a large basis they cost as much as many steps.
+
+    Parameters
+    ----------
+    looks : list of (size, logarithm of the residual)
+        So far.
+    goal : float
+        Logarithm of the residual that is wanted.
+    """
+    size, residual = looks[-1]
+    growth = NEXT_LOOK * size
+    if len(looks) > 1 and residual < looks[-2][1]:
+        pace = (looks[-2][1] - residual) / (size - looks[-2][0])
+        growth = min(growth, PACE * (residual - goal) / pace)
+    return int(size + growth)
 
 
 def _error(pencil: Pencil, values: Floats, functions: Floats) -> float:

@@ -42,6 +42,7 @@ def test_an_armature_is_made_and_a_bone_of_it_turns_what_it_is_bound_to(rigged, 
     assert moved[before[:, 0] < -0.1].max() < 1e-4
     assert name in rigged.value(f"[group.name for group in {MESH}.vertex_groups]")
     rigged.press("TAB", ctrl=True)
+    rigged.wait_for("bpy.context.mode == 'OBJECT'")
     select(rigged, "humanoid rest rig", "humanoid rest")
     unfold(rigged, "Parts", "Skeleton")
     show("armature")

@@ -1,12 +1,14 @@
 """The iteration on matrices that are known, and its refusal to believe a bad factor."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array, eye_array
 from scipy.sparse.linalg import splu
 
 from compute.errors import SpectrumError
-from compute.fem import eigensolver
+from compute.fem import block_lanczos, eigensolver
 from compute.fem.block_lanczos import Pencil, smallest_eigenpairs
 from compute.fem.eigenbasis import solve_eigenbasis
 from compute.progress import silent
@@ -35,6 +37,30 @@ def test_ring_of_springs():
     j = np.array([0, 1, 1, 2, 2, 3, 3, 4, 4])
     np.testing.assert_allclose(values, 2 - 2 * np.cos(2 * np.pi * j / 600), atol=1e-12)
     np.testing.assert_allclose(functions.T @ functions, np.eye(9), atol=1e-9)
+
+
+def test_ritz_values_are_looked_at_seldom_and_no_step_too_many_is_taken(monkeypatch):
+    """Of a large basis they cost as much as many steps."""
+    seldom = calls_for_a_ring(monkeypatch)
+    monkeypatch.setattr(block_lanczos, "_next_look", lambda looks, goal: 0)
+    always = calls_for_a_ring(monkeypatch)
+    assert seldom["_extend"] <= 1.1 * always["_extend"]
+    assert seldom["_ritz"] <= 0.2 * seldom["_extend"]
+
+
+def calls_for_a_ring(monkeypatch):
+    """Return how often the iteration takes a step, and how often it looks at Ritz values, for many pairs."""
+    counts = Counter()
+
+    def counted(name, function):
+        return lambda *arguments: counts.update([name]) or function(*arguments)
+
+    start = np.random.default_rng(0).standard_normal((2000, 4))
+    with monkeypatch.context() as patch:
+        for name in ("_extend", "_ritz"):
+            patch.setattr(block_lanczos, name, counted(name, getattr(block_lanczos, name)))
+        smallest_eigenpairs(pencil_of(ring_of_springs(2000)), start, 60, 1e-6, silent)
+    return counts
 
 
 @pytest.mark.parametrize("scale", [0.5, 1e-6])
