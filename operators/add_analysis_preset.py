@@ -28,7 +28,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory((EIG
 
 
 def register() -> None:
-    """Add the operator and the presets that come along; Blender 4.2 shows the user's own only."""
+    """Add the operator and the presets that come along; the first releases of Blender 4.2 show only the user's own."""
     _register_classes()
     if hasattr(bpy.utils, "register_preset_path"):
         bpy.utils.register_preset_path(HOME)
