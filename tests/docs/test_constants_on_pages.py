@@ -5,18 +5,20 @@ import re
 import pytest
 
 from compute import fields, shell_fields, shells
-from compute.fem import assembly
+from compute.fem import assembly, eigensolver, order_choice
 from compute.registration import (
     alignment,
     correspondence,
     deformation_graph,
+    dense,
+    hypotheses,
     part_matching,
     selection,
     spectral_shape,
     transfer,
     zoomout,
 )
-from compute.segmentation import hierarchy, nesting
+from compute.segmentation import hierarchy, necks, nesting
 from compute.skeleton import bends, binding
 from tests.docs.pages import ROOT
 
@@ -62,10 +64,40 @@ LOOSE_PARTS = {
     "lying": f"{percent(shells.LYING_SHARE)} of its vertices nearer than {percent(shells.LYING)} of the root",
 }
 TROUBLESHOOTING = {"islands": f"more than {transfer.MOST_ISLANDS} islands"}
+DECISIONS = {
+    "bridged_loose_parts": {name: LOOSE_PARTS[name] for name in ("detail", "near", "lying")},
+    "cubic_elements": {
+        "memory": f"below {order_choice.MEMORY_BUDGET / 1e9:g} GB",
+        "unknown": f"({order_choice.BYTES_PER_UNKNOWN / 1000:g} kB an unknown)",
+    },
+    "own_elimination_order": {"width": f"block Lanczos, {IN_WORDS[eigensolver.LEAST_WIDTH]} functions at a time"},
+    "diffusion_field": {
+        "functions": f"up to {fields.DIFFUSION_FUNCTIONS} functions",
+        "time": f"diffusion, time {fields.DIFFUSION_TIME:g} (the present one)",
+        "flat": f"range of {fields.FLAT_DIFFUSION:g} it counts as flat",
+    },
+    "default_level": {
+        "threshold": f"above {percent(hierarchy.DEFAULT_THRESHOLD)} of the range",
+        "noise": f"Below {percent(hierarchy.NOISE_THRESHOLD)} they are noise",
+        "blunt": f"is below {nesting.BLUNT:g}, its tip left out",
+    },
+    "nested_in_blender": {
+        "neck": f"below {nesting.NECK:g}",
+        "height": f"span {percent(necks.LEAST_HEIGHT)} of the range",
+        "area": f"have {percent(nesting.LEAST_AREA)} of the area",
+    },
+    "matching_by_moments": {"growth": f"grow to {hypotheses.Effort().levels[-1]} first"},
+    "bent_surfaces": {
+        "nodes": f"up to {correspondence.N_NODES} nodes",
+        "rounds": f"in {len(alignment.ROUNDS)} rounds",
+        "functions": f"refined to {dense.DENSE_SIZES[-1]} functions",
+    },
+}
 PAGES = {
     "docs/method.md": METHOD,
     "docs/guide/loose_parts.md": LOOSE_PARTS,
     "docs/guide/troubleshooting.md": TROUBLESHOOTING,
+    **{f"docs/decisions/{name}.md": told for name, told in DECISIONS.items()},
 }
 
 
@@ -74,5 +106,5 @@ PAGES = {
     [pytest.param(page, told, id=name) for page, numbers in PAGES.items() for name, told in numbers.items()],
 )
 def test_the_page_has_the_constant_of_the_code(page, told):
-    text = re.sub(r"(?<=\S)\n(?=\S)", " ", (ROOT / page).read_text())
+    text = re.sub(r"(?<=\S)\n *(?=\S)", " ", (ROOT / page).read_text())
     assert told in text
