@@ -82,7 +82,7 @@ DECISIONS = {
         "blunt": f"is below {nesting.BLUNT:g}, its tip left out",
     },
     "nested_in_blender": {
-        "neck": f"below {nesting.NECK:g}",
+        "neck": f"of the two sides, below {nesting.NECK:g}",
         "height": f"span {percent(necks.LEAST_HEIGHT)} of the range",
         "area": f"have {percent(nesting.LEAST_AREA)} of the area",
     },
