@@ -5,6 +5,7 @@ import numpy as np
 from bpy.props import EnumProperty
 
 from . import correcting, corrections, engine, paint_part, registered, results, state
+from .custom_normals import normals_kept
 from .exchange import read_mesh
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
@@ -62,7 +63,8 @@ def insert_borders(obj: bpy.types.Object) -> None:
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
     profile, crossings = correcting.crossings(mesh, source)
     arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
-    faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
+    with normals_kept(mesh):
+        faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
     for number, arc in enumerate(arcs):
         arcs[number] = np.concatenate([arc, arc[faces.origin]])
         arcs[number][faces.face] = faces.arcs[:, number]

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from . import part_table, state
+from .custom_normals import normals_kept
 from .exchange import remove_own_attributes
 from .ownership import mend
 from .refusals import Refusal, can_use_active_mesh, refusals_told
@@ -27,7 +28,8 @@ class EIGENPARTS_OT_separate(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         with refusals_told(self), nothing_left_behind(context):
             pieces = separate_parts(context.object)
-            for piece in pieces:
+            # A script may be about an object that this view layer has not, where nothing can be selected.
+            for piece in set(pieces).intersection(context.view_layer.objects):
                 piece.select_set(True)
             tell(self, "INFO", f"{len(pieces)} objects.")
             return {"FINISHED"}
@@ -69,13 +71,18 @@ def _mesh_of_part(mesh: bpy.types.Mesh, is_kept: np.ndarray, name: str) -> bpy.t
     piece = mesh.copy()
     piece.name = name
     _forget_analysis(piece)
-    edited = bmesh.new()
-    edited.from_mesh(piece)
-    dropped = [face for face, kept in zip(edited.faces, is_kept.tolist(), strict=True) if not kept]
-    bmesh.ops.delete(edited, geom=dropped, context="FACES")
-    edited.to_mesh(piece)
-    edited.free()
+    with normals_kept(piece):
+        _delete_faces(piece, ~is_kept)
     return piece
+
+
+def _delete_faces(mesh: bpy.types.Mesh, is_dropped: np.ndarray) -> None:
+    edited = bmesh.new()
+    edited.from_mesh(mesh)
+    dropped = [face for face, drops in zip(edited.faces, is_dropped.tolist(), strict=True) if drops]
+    bmesh.ops.delete(edited, geom=dropped, context="FACES")
+    edited.to_mesh(mesh)
+    edited.free()
 
 
 def _forget_analysis(mesh: bpy.types.Mesh) -> None:

@@ -138,7 +138,7 @@ def _object_of(context: bpy.types.Context, mesh: bpy.types.Mesh) -> bpy.types.Ob
     """Return an object with the mesh, the active one if it still is that."""
     users = [obj for obj in context.view_layer.objects if obj.data == mesh]
     if not users:
-        raise Refusal("The object was deleted while its mesh was analyzed.")
+        raise Refusal("The object is not in the view layer; it was deleted, excluded or belongs to another scene.")
     return context.object if context.object in users else users[0]
 
 

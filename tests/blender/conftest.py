@@ -73,3 +73,21 @@ def everything_on(mesh):
     }
     names = sorted(attribute.name for attribute in mesh.attributes)
     return attributes, names, sorted(mesh.keys()), mesh.color_attributes.active_color_name
+
+
+def give_custom_normals(mesh):
+    """Give a mesh normals that have nothing to do with its surface, and change slowly over it."""
+    mesh.shade_smooth()
+    mesh.normals_split_custom_set_from_vertices(_normals_at(values_of(mesh, "position", 3, np.float32, "vector")))
+
+
+def corner_normals_of(mesh):
+    """Return the normals at the corners of the faces, and what they are after `give_custom_normals`."""
+    corners = values_of(mesh, ".corner_vert")
+    normals = np.array([normal.vector for normal in mesh.corner_normals])
+    return normals, _normals_at(values_of(mesh, "position", 3, np.float32, "vector"))[corners]
+
+
+def _normals_at(places):
+    normals = [0.3, 0.4, 0.9] + 0.1 * np.sin(places)
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze
-from tests.blender.conftest import add_object, everything_on, values_of
+from tests.blender.conftest import add_object, corner_normals_of, everything_on, give_custom_normals, values_of
 from tests.blender.test_analyze import two_triangles_a_polygon
 
 
@@ -74,6 +74,13 @@ def test_what_was_linear_in_space_still_is(quads):
     np.testing.assert_allclose(key, places @ np.array([[1, 0, 0], [0.5, 1, 0], [0, 0, 2]]), atol=1e-4)
     weights = np.array([sum(entry.weight for entry in vertex.groups) for vertex in mesh.vertices])
     np.testing.assert_allclose(weights, 1, atol=1e-5)
+
+
+def test_custom_normals_stay_and_are_interpolated(quads):
+    give_custom_normals(quads.data)
+    bpy.ops.eigenparts.cut()
+    assert quads.data.has_custom_normals
+    np.testing.assert_allclose(*corner_normals_of(quads.data), atol=0.03)
 
 
 def test_faces_that_no_border_crosses_stay_and_pieces_keep_the_attributes_of_theirs(quads):

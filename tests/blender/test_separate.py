@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.blender.conftest import values_of
+from tests.blender.conftest import corner_normals_of, give_custom_normals, values_of
 
 
 @pytest.fixture
@@ -87,3 +87,23 @@ def test_undo_brings_the_whole_back(analyzed):
         bpy.ops.ed.undo()
     assert [obj.name for obj in bpy.data.objects] == ["star"]
     assert len(bpy.data.objects["star"].data.polygons) == n_faces
+
+
+def test_custom_normals_stay_along_the_borders(analyzed):
+    """Blender stores them relative to the faces around a vertex, of which a piece has some only."""
+    give_custom_normals(analyzed.data)
+    for piece in separate():
+        np.testing.assert_allclose(*corner_normals_of(piece.data), atol=0.03)
+
+
+def test_an_object_that_the_view_layer_has_not_is_separated_by_a_script(analyzed):
+    hidden = bpy.data.collections.new("hidden")
+    bpy.context.scene.collection.children.link(hidden)
+    hidden.objects.link(analyzed)
+    bpy.context.scene.collection.objects.unlink(analyzed)
+    bpy.context.view_layer.layer_collection.children["hidden"].exclude = True
+    n_faces = len(analyzed.data.polygons)
+    with bpy.context.temp_override(object=analyzed):
+        assert bpy.ops.eigenparts.separate() == {"FINISHED"}
+    assert len(hidden.objects) == 6
+    assert sum(len(obj.data.polygons) for obj in hidden.objects) == n_faces
