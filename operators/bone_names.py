@@ -9,6 +9,10 @@ SUFFIXES = {1: ".L", -1: ".R", 0: ""}
 # Names that already tell a side, and names that nobody gave.
 SIDED = (".L", ".R", "_L", "_R", ".l", ".r", "_l", "_r")
 UNNAMED = "Part "
+# Bytes in the names of bones; Blender would cut longer ones, and with them the side and the number.
+LONGEST_NAME = 63
+# What of them is left for the name of a part, so that what its bone is or its number stays.
+LONGEST_BASE = 50
 
 
 def name_bones(
@@ -40,10 +44,10 @@ def name_bones(
         own, goal = int(part[joint]), goals[joint]
         base, suffix = sided[goal if goal >= 0 else own]
         if goal >= 0:
-            base += " root"
+            base = _shortened(base, LONGEST_BASE) + " root"
         elif count[own] > 1:
             seen[own] += 1
-            base += f"_{seen[own]}"
+            base = f"{_shortened(base, LONGEST_BASE)}_{seen[own]}"
         given.append(_free(base, suffix, taken.union(given)))
     return given
 
@@ -69,5 +73,11 @@ def _sided(number: int, names: dict[int, str], pairing: dict[int, tuple[int, int
 
 
 def _free(base: str, suffix: str, taken: set[str]) -> str:
-    candidates = [base + suffix, *(f"{base}_{number:03}{suffix}" for number in range(1, len(taken) + 2))]
+    endings = [suffix, *(f"_{number:03}{suffix}" for number in range(1, len(taken) + 2))]
+    candidates = (_shortened(base, LONGEST_NAME - len(ending)) + ending for ending in endings)
     return next(candidate for candidate in candidates if candidate not in taken)
+
+
+def _shortened(name: str, n_bytes: int) -> str:
+    """Return the beginning of a name that takes so many bytes at most, in whole letters."""
+    return name.encode()[:n_bytes].decode(errors="ignore")

@@ -35,3 +35,13 @@ def test_no_name_is_given_twice_or_taken_from_a_group(extension):
     names = named(extension, {**NAMES, 2: "Part 1"}, taken={"tail", "Root"})
     assert len(set(names)) == len(names)
     assert not {"tail", "Root"} & set(names)
+
+
+def test_long_names_keep_their_side_and_number(extension):
+    """Blender cuts names after 63 bytes, here within a letter."""
+    long = "右手" * 30
+    names = named(extension, {**NAMES, 1: long + ".L", 2: long + "x.R"})
+    assert len(set(names)) == len(names)
+    assert max(len(name.encode()) for name in names) <= 63
+    assert names[2].startswith("右手右手")
+    assert [name[-4:] for name in names[2:4]] == ["_1.L", "_2.L"]
