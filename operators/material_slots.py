@@ -16,6 +16,8 @@ Slot = bpy.types.Material | int | None
 MATERIAL_INDEX = "material_index"
 # On our materials: the part they belong to.
 PART_OF_MATERIAL = "eigenparts_part"
+# Of the number that Blender adds to a name that is taken, and bytes from which on it may have cut a name short.
+N_DIGITS, LONG_NAME = 3, 60
 # On the mesh while it has our materials.
 IS_WRITTEN = "eigenparts_materials"
 
@@ -28,8 +30,13 @@ def write(mesh: bpy.types.Mesh, division: Division) -> None:
     _drop_slots(mesh, set(division.names))
     slot_of_part = np.zeros(len(division.colours), dtype=np.int32)
     for part, name in division.names.items():
-        slot_of_part[part] = _slot(mesh, part)
-        _dress(mesh.materials[slot_of_part[part]], name, division.colours[part].tolist())
+        slot_of_part[part] = slot = _slot(mesh, part)
+        colour = division.colours[part].tolist()
+        if not _is_dressed(mesh.materials[slot], name, colour):
+            if mesh.materials[slot].users > 1:
+                # A copy of the mesh has it too, and keeps it as it is.
+                mesh.materials[slot] = _new_material(part)
+            _dress(mesh.materials[slot], name, colour)
     _assign(mesh, slot_of_part[division.labels])
 
 
@@ -118,10 +125,22 @@ def _new_material(part: int) -> bpy.types.Material:
     return material
 
 
+def _is_dressed(material: bpy.types.Material, name: str, colour: list[float]) -> bool:
+    return _has_name(material, name) and list(material.diffuse_color) == colour
+
+
+def _has_name(material: bpy.types.Material, name: str) -> bool:
+    """Whether a material has a name, also with the number that Blender adds where it is taken, or cut short."""
+    stem, _, number = material.name.rpartition(".")
+    if not (number.isdecimal() and len(number) == N_DIGITS):
+        stem = material.name
+    is_cut = len(material.name.encode()) >= LONG_NAME
+    return name in (material.name, stem) or (is_cut and name.startswith(stem))
+
+
 def _dress(material: bpy.types.Material, name: str, colour: list[float]) -> None:
     """Give a material name and colour, in solid view and, from Blender 5 on where all have nodes, in its shader."""
-    # Blender may have added a number because the name was taken.
-    if material.name.rpartition(".")[0] != name and material.name != name:
+    if not _has_name(material, name):
         material.name = name
     if list(material.diffuse_color) != colour:
         material.diffuse_color = colour

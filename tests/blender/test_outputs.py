@@ -106,6 +106,27 @@ def test_materials_of_the_user_come_back(star_object):
     assert [material.name for material in bpy.data.materials] == ["Part 1", "skin"]
 
 
+def test_a_copy_with_other_names_and_colours_leaves_the_materials_of_the_original(analyzed):
+    write("MATERIALS")
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    part = copy.data.eigenparts.rows[1].part
+    copy.data.eigenparts.rows[1].title = "tail"
+    copy.data.eigenparts.rows[2].color = (0.25, 0.5, 0.75)
+    assert [copy.data.materials[part].name, analyzed.data.materials[part].name] == ["tail", "Part 1"]
+    colours = [obj.data.materials[2].diffuse_color[:3] for obj in (analyzed, copy)]
+    assert colours == [tuple(analyzed.data.eigenparts.rows[2].color), (0.25, 0.5, 0.75)]
+    assert materials_of_faces(copy.data).count("tail") == copy.data.eigenparts.rows[1].n_faces
+
+
+def test_a_material_follows_the_name_of_its_part_also_to_one_with_the_same_beginning(analyzed):
+    write("MATERIALS")
+    row = analyzed.data.eigenparts.rows[1]
+    for name in ("Leg.L", "Leg", "Leg.R"):
+        row.title = name
+        assert analyzed.data.materials[row.part].name == name
+
+
 def test_the_field_rises_towards_the_tips(analyzed, star):
     write("FIELD")
     field = values_of(analyzed.data, "eigenparts_field", dtype=np.float32)
