@@ -67,6 +67,8 @@ def _refuse_foreign_part(obj: bpy.types.Object, layer: Layer) -> None:
 
 def _refuse_clash(obj: bpy.types.Object, layer: Layer) -> None:
     present = obj.data.attributes.get(layer.name)
+    if present is not None and layer.name in exchange.own_names(obj.data):
+        raise Refusal(f'The attribute "{layer.name}" here is from Eigenparts; take it back, or rename the other one.')
     if present is not None and (present.data_type, present.domain) != (layer.data_type, layer.kind):
         raise Refusal(f'There is an attribute "{layer.name}" of another kind; rename one of them.')
 
@@ -137,12 +139,12 @@ def fill_group(group: bpy.types.VertexGroup, weights: np.ndarray, before: np.nda
 
 def _write_key(obj: bpy.types.Object, layer: Layer, share: np.ndarray) -> None:
     keys = obj.data.shape_keys
-    basis = read_key(keys.reference_key)
     block = keys.key_blocks.get(layer.name)
-    before = read_key(block) - basis if block is not None else np.zeros_like(basis)
     if block is None:
         block = obj.shape_key_add(name=layer.name, from_mix=False)
-    moved = basis + engine.mixed(before, layer.values, share)
+        block.data.foreach_set("co", np.float32(read_key(keys.reference_key)).ravel())
+    basis = read_key(block.relative_key)
+    moved = basis + engine.mixed(read_key(block) - basis, layer.values, share)
     block.data.foreach_set("co", np.float32(moved).ravel())
 
 

@@ -159,6 +159,30 @@ def test_shape_keys_are_turned_with_the_surface(balls):
     np.testing.assert_allclose(np.median(delta, axis=0), [0, 0.5, 0], atol=0.05)
 
 
+def test_a_shape_key_that_starts_from_another_is_written_from_there(rest, bent):
+    """What a key moves is the way from the key that it is relative to."""
+    for obj, names in ((rest, ["Basis", "Push"]), (bent, ["Basis", "Twist", "Push"])):
+        for name in names:
+            obj.shape_key_add(name=name)
+    keys = bent.data.shape_keys.key_blocks
+    keys["Push"].relative_key = keys["Twist"]
+    keys["Twist"].data.foreach_set("co", np.float32(mesh_positions(bent.data) + np.array([0, 0, 3])).ravel())
+    bpy.ops.eigenparts.transfer(layers={"SHAPE_KEYS"})
+    moved = [np.array([point.co for point in keys[name].data]) for name in ("Twist", "Push")]
+    np.testing.assert_allclose(moved[1], moved[0], atol=1e-5)
+
+
+def test_attributes_of_ours_are_not_taken_for_those_of_the_user(rest, bent):
+    bpy.context.view_layer.objects.active = bent
+    bpy.ops.eigenparts.analyze()
+    labels = values_of(bent.data, "part")
+    bpy.context.view_layer.objects.active = rest
+    rest.data.attributes.new("part", "INT", "FACE")
+    with pytest.raises(RuntimeError, match="is from Eigenparts"):
+        bpy.ops.eigenparts.transfer(layers={"FACES"})
+    np.testing.assert_array_equal(values_of(bent.data, "part"), labels)
+
+
 def test_materials_and_parts_come_along(rest, bent):
     for name in ("Skin", "Glove"):
         rest.data.materials.append(bpy.data.materials.new(name))
