@@ -6,19 +6,26 @@ from typing import Any
 
 import numpy as np
 
-from . import engine, layers
+from . import engine, layers, recent_analyses
 from .exchange import MeshArrays
 from .layers import Layer
+from .recent import Recent, key_of
 from .refusals import Refusal, in_name_of
 
 Progress = Callable[[float, str], None]
 
+# What an analysis needs for matching.
+JUST_ENOUGH = {"n_functions": 2, "order": 1}
+# Vertices of all maps that are kept; each takes a tenth of a kB.
+RECENT_VERTICES = 200_000
 # A matching this unsure is none.
 NO_MATCH = 0.03
 NOT_ALIKE = (
     "{} and {} are not alike enough to be matched (confidence {:.0%}); nothing was transferred. If one is the mirror"
     " image of the other, choose Mirrored."
 )
+
+_recent_maps = Recent(RECENT_VERTICES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,16 +92,54 @@ def transfer_bodies(
         Whether unsure vertices are filled in from their neighbours.
     """
     targets = [_split_alike(source, target) for target in targets]
-    analyses = [
-        _analyze(body, engine.section(progress, 0.3 * k / (1 + len(targets)), 0.3 * (k + 1) / (1 + len(targets))))
-        for k, body in enumerate((source, *targets))
+    found = _correspondences(source, targets, mirrored, progress)
+    here = _mesh_of(source)
+    return [
+        _transferred(one, here, _mesh_of(target), (source, target), given, fills)
+        for one, target in zip(found, targets, strict=True)
     ]
-    results = []
-    for number, (target, analysis) in enumerate(zip(targets, analyses[1:], strict=True)):
-        part = engine.section(progress, 0.3 + 0.7 * number / len(targets), 0.3 + 0.7 * (number + 1) / len(targets))
-        found = _correspond(source, target, analyses[0], analysis, mirrored, engine.naming(part, target.name))
-        results.append(_transferred(found, analyses[0].mesh, analysis.mesh, (source, target), given, fills))
-    return results
+
+
+def _mesh_of(body: Body) -> "engine.TriangleMesh":
+    return engine.TriangleMesh(body.arrays.vertices, body.arrays.triangles)
+
+
+def _correspondences(
+    source: Body, targets: list[Body], mirrored: bool, progress: Progress
+) -> list["engine.Correspondence"]:
+    """Return the maps to all targets; those that were found for other layers before are at hand."""
+    keys = [_key_of_map(source, target, mirrored) for target in targets]
+    found = {key: _recent_maps.get(key) for key in keys}
+    missing = {key: target for key, target in zip(keys, targets, strict=True) if found[key] is None}
+    if missing:
+        found |= _new_correspondences(source, missing, mirrored, progress)
+    return [found[key] for key in keys]
+
+
+def _new_correspondences(
+    source: Body, targets: Mapping[str, Body], mirrored: bool, progress: Progress
+) -> dict[str, "engine.Correspondence"]:
+    # All are analyzed first: what cannot be is told before the longer part begins.
+    first, *others = _steps(engine.section(progress, 0, 0.3), 1 + len(targets))
+    here = _analyze(source, first, recent_analyses.recall)
+    bodies = zip(targets.values(), others, strict=True)
+    analyses = [_analyze(target, told, recent_analyses.reuse) for target, told in bodies]
+    found = {}
+    steps = _steps(engine.section(progress, 0.3, 0.95), len(targets))
+    for (key, target), there, step in zip(targets.items(), analyses, steps, strict=True):
+        found[key] = _correspond(source, target, here, there, mirrored, engine.naming(step, target.name))
+        _recent_maps.put(key, found[key], len(target.arrays.vertices))
+    return found
+
+
+def _key_of_map(source: Body, target: Body, mirrored: bool) -> str:
+    places = [array for body in (source, target) for array in (body.arrays.vertices, body.arrays.triangles)]
+    return key_of([*places, mirrored, sorted(target.flips.items()), target.alternative])
+
+
+def _steps(progress: Progress, number: int) -> list[Progress]:
+    """Return callbacks whose 0..1 are equal steps, one after the other."""
+    return [engine.section(progress, k / number, (k + 1) / number) for k in range(number)]
 
 
 def _split_alike(source: Body, target: Body) -> Body:
@@ -111,11 +156,12 @@ def _split_alike(source: Body, target: Body) -> Body:
     return replace(target, arrays=replace(target.arrays, triangles=triangles, polygon_of_triangle=polygons))
 
 
-def _analyze(body: Body, progress: Progress) -> "engine.Analysis":
+def _analyze(
+    body: Body, progress: Progress, analysis_of: Callable[[MeshArrays, dict[str, Any], Progress], "engine.Analysis"]
+) -> "engine.Analysis":
     """Return an analysis that is just enough for matching."""
     with in_name_of(body.name):
-        mesh = engine.TriangleMesh(body.arrays.vertices, body.arrays.triangles)
-        return engine.analyze(mesh, n_functions=2, order=1, progress=engine.naming(progress, body.name))
+        return analysis_of(body.arrays, JUST_ENOUGH, engine.naming(progress, body.name))
 
 
 def _correspond(
@@ -127,7 +173,7 @@ def _correspond(
     matching = choices[target.alternative % len(choices)]
     if matching.confidence < NO_MATCH:
         raise Refusal(NOT_ALIKE.format(source.name, target.name, matching.confidence))
-    return engine.correspond(here, there, matching=matching, progress=engine.section(progress, 0.5, 0.9))
+    return engine.correspond(here, there, matching=matching, progress=engine.section(progress, 0.5, 1))
 
 
 def _transferred(

@@ -1,4 +1,4 @@
-"""The analyses made last, kept while Blender runs: bones, diagram and complex of the same mesh then need no new one."""
+"""The analyses made last, kept while Blender runs: what is made of the same mesh afterwards then needs no new one."""
 
 from collections.abc import Callable
 from typing import Any
@@ -30,6 +30,11 @@ def analyze_and_keep(
 def recall(arrays: MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> "engine.Analysis":
     """Return the analysis that was made before, a new one if it is not here any more."""
     return _recent.get(key_of_analysis(arrays, options)) or analyze_and_keep(arrays, options, progress)
+
+
+def reuse(arrays: MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> "engine.Analysis":
+    """Return the analysis that was made before, or a new one that is not kept."""
+    return _recent.get(key_of_analysis(arrays, options)) or analyze(arrays, options, progress)
 
 
 def key_of_analysis(arrays: MeshArrays, options: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from . import engine
+from . import engine, recent_analyses
 from .analyze import Outcome, outcome_of
 from .exchange import MeshArrays
 from .recent import Recent, key_of
@@ -168,8 +168,7 @@ def _examine(subject: Subject, progress: Progress) -> Examined:
     told = engine.naming(progress, subject.name)
     start = time.perf_counter()
     with in_name_of(subject.name):
-        mesh = engine.TriangleMesh(arrays.vertices, arrays.triangles)
-        analysis = engine.analyze(mesh, **subject.options, progress=engine.section(told, 0, ANALYSIS_SHARE))
+        analysis = recent_analyses.reuse(arrays, subject.options, engine.section(told, 0, ANALYSIS_SHARE))
         outcome = outcome_of(analysis, arrays, subject.options, time.perf_counter() - start)
         points = engine.matching_shape(analysis, engine.section(told, ANALYSIS_SHARE, 1))
     examined = Examined(key, engine.divisible(analysis, points, arrays.polygon_of_triangle), outcome)
