@@ -62,9 +62,14 @@ def test_two_characters_get_the_same_parts(window, hand, take):
     assert sum(a == b for a, b in zip(rest, fist, strict=True)) > 0.95 * len(rest)
 
 
-def test_a_pose_with_other_faces_gets_the_same_parts_in_the_same_places(pair, humanoid, walker, show):
+def test_a_pose_with_other_faces_gets_the_same_parts_in_the_same_places(pair, humanoid, walker, show, take):
     select(pair, "humanoid walk", "humanoid rest")
+    unfold(pair, "Register")
     choose(pair, "register selected")
+    pair.wait_for("bpy.context.window_manager.eigenparts.is_running")
+    # Its progress is in the panel Register, and nowhere else.
+    assert pair.value("bpy.context.window_manager.eigenparts.job") == "eigenparts.register_selected"
+    take("registering")
     # Seconds; on a busy machine, matching by shape takes a while.
     pair.wait_for("'part' in bpy.data.objects['humanoid walk'].data.attributes", 400.0)
     unfold(pair, "Level", "Parts", "Register")
