@@ -22,6 +22,7 @@ pictures: environment  ## the pictures of the documentation, or NAMES="levels.gi
 	@OPENBLAS_NUM_THREADS=1 $(RUN) -m tools.pictures $(if $(DATA),--data "$(DATA)") $(NAMES)
 
 bench: environment  ## quick benchmarks, or NAMES="topology slider"; DATA=folder for all of them in full; tables in demo/bench/
+	@$(RUN) -m pip install -qq --disable-pip-version-check -r benchmarks/requirements.txt || echo "Some peers are missing."
 	@$(RUN) tools/bench.py $(if $(DATA),--data "$(DATA)") $(NAMES)
 
 test: environment  ## engine tests and Blender tests

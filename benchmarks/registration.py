@@ -12,12 +12,12 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 
+from benchmarks.peers import is_installed, versions_of
 from benchmarks.posed_families import FAMILIES, Mirror, Pose, find_mirror, load_family, read_mesh, shuffled
 from benchmarks.registration_peers import (
     ORIENTATION_WEIGHTS,
@@ -154,7 +154,7 @@ def run_family(family: Family, kinds: list[str], n_pairs: int, peer_every: int, 
         for place, poses in enumerate(family.pairs(n_pairs)):
             if not ledger.has(OURS, family.name, kind, poses):
                 ledger.add(run_ours(family, kind, poses))
-            for method in ORIENTATION_WEIGHTS:
+            for method in ORIENTATION_WEIGHTS if is_installed("pyFM") else ():
                 if place % peer_every == 0 and not ledger.has(method, family.name, kind, poses):
                     ledger.add(run_peer(method, family, kind, poses))
 
@@ -254,16 +254,6 @@ def _quick_shape(mesh: TriangleMesh):
     return spectral_shape(analyze(mesh, n_functions=2, order=1).matching_basis)
 
 
-def _versions() -> str:
-    found = []
-    for name in ("numpy", "scipy", "pymeshlab", "pyfmaps"):
-        try:
-            found.append(f"{name} {version(name)}")
-        except PackageNotFoundError:
-            found.append(f"no {name}")
-    return ", ".join(found)
-
-
 def _sections(arguments: argparse.Namespace | SimpleNamespace, ledger: Ledger) -> Iterator[Iterator[str]]:
     reports: tuple[Callable[[list[Outcome]], Iterator[str]], ...] = (table, peer_table, failures)
     for report in reports:
@@ -284,7 +274,7 @@ def main() -> None:
     parser.add_argument("--kinds", default=",".join(KINDS), help="of copies")
     arguments = parser.parse_args()
     arguments.cache.mkdir(parents=True, exist_ok=True)
-    print(_versions() + "\n", flush=True)
+    print(versions_of("numpy", "scipy", "pymeshlab", "pyfmaps") + "\n", flush=True)
     ledger = Ledger(arguments.outcomes)
     for family in families(arguments.data, arguments.families.split(","), arguments.cache):
         run_family(family, arguments.kinds.split(","), arguments.pairs, arguments.peer_every, ledger)

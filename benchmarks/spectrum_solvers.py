@@ -3,7 +3,6 @@
 Run as a program, it solves one problem with one solver and prints what came out and what it cost as JSON.
 """
 
-import importlib.metadata
 import json
 import platform
 import resource
@@ -14,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from benchmarks.peers import versions_of
 from compute.fem.assembly import mass_matrix, stiffness_matrix
 from compute.fem.eigenbasis import solve_eigenbasis
 from compute.fem.space import function_space
@@ -78,8 +78,7 @@ SOLVERS = {
 
 def versions() -> str:
     """Return a line that says what was measured on what."""
-    names = ("numpy", "scipy", "lapy", "cholespy")
-    found = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in names)
+    found = versions_of("numpy", "scipy", "lapy", "cholespy")
     return f"Python {platform.python_version()}, {found}, one BLAS thread, {platform.machine()}"
 
 

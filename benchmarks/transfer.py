@@ -14,11 +14,11 @@ import time
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.peers import is_installed, versions_of
 from benchmarks.posed_families import FAMILIES, Pose, SurfacePoints, closest_points, find_mirror, load_family
 from benchmarks.registration_peers import FIT, N_FUNCTIONS
 from benchmarks.registration_truth import MIDDLE, Copy, make_copy
@@ -157,7 +157,7 @@ def _at_vertices(vertices: Ints, mesh: TriangleMesh) -> SurfacePoints:
     return SurfacePoints(side[vertices] // 3, np.eye(3)[side[vertices] % 3])
 
 
-METHODS = {OURS: by_us, PEER: by_peer, NEAREST: by_nearest}
+METHODS = {OURS: by_us, **({PEER: by_peer} if is_installed("pyFM") else {}), NEAREST: by_nearest}
 
 
 def run_family(data: Path, family: str, cache: Path, n_pairs: int) -> Iterator[Outcome]:
@@ -219,8 +219,7 @@ def main() -> int:
     parser.add_argument("--families", default=",".join(FAMILIES))
     arguments = parser.parse_args()
     arguments.cache.mkdir(parents=True, exist_ok=True)
-    names = ("numpy", "scipy", "pyfmaps", "pymeshlab")
-    sys.stdout.write(", ".join(f"{name} {version(name)}" for name in names) + "\n\n")
+    sys.stdout.write(versions_of("numpy", "scipy", "pyfmaps", "pymeshlab") + "\n\n")
     outcomes: list[Outcome] = []
     for family in arguments.families.split(","):
         outcomes += run_family(arguments.data, family, arguments.cache, arguments.pairs)
