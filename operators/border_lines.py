@@ -19,7 +19,7 @@ def border_lines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.nd
     They are those of the object as its modifiers leave it. In edit mode there are none.
     """
     mesh = obj.evaluated_get(depsgraph).data
-    if obj.type != "MESH" or obj.mode == "EDIT" or not is_analyzed(obj.data) or not _has_parts(mesh):
+    if obj.type != "MESH" or obj.data.is_editmode or not is_analyzed(obj.data) or not _has_parts(mesh):
         return np.empty((0, 3), dtype=np.float32)
     positions, labels = (
         _values(mesh, "position", "vector", 3, np.float32),

@@ -15,7 +15,7 @@ def outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray
     none.
     """
     nothing = np.empty((0, 3), dtype=np.float32)
-    if obj.type != "MESH" or obj.mode == "EDIT" or not is_analyzed(obj.data) or obj.data.eigenparts.active_row < 0:
+    if obj.type != "MESH" or obj.data.is_editmode or not is_analyzed(obj.data) or obj.data.eigenparts.active_row < 0:
         return nothing
     mesh = obj.evaluated_get(depsgraph).data
     part = mesh.attributes.get(PART.name)

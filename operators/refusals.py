@@ -55,7 +55,8 @@ def _objection(obj: bpy.types.Object | None) -> str:
         return engine.MISSING_SCIPY
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first."
-    if obj.mode == "EDIT":
+    # Another object with the same mesh may be the one in edit mode.
+    if obj.data.is_editmode:
         return IN_EDIT_MODE
     return LINKED if is_linked(obj.data) else ""
 

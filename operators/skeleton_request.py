@@ -129,7 +129,8 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
     """Return what to tell of a registered mesh whose reference has no bones that it could be given."""
     reference = bone_layout.reference_of(mesh)
-    if reference is None or bone_layout.read(reference.data) is not None:
+    # An object that was deleted lives on where others refer to it, but nothing can be created for it.
+    if reference is None or not reference.users_scene or bone_layout.read(reference.data) is not None:
         return []
     return [bone_layout.NO_BONES.format(reference.name)]
 
@@ -198,7 +199,7 @@ def _other_poses(context: bpy.types.Context) -> tuple[np.ndarray, ...]:
     """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
     others = [obj for obj in context.selected_objects if obj is not context.object and obj.type == "MESH"]
     mesh = context.object.data
-    meshes = [obj.data for obj in others if obj.mode != "EDIT" and _share_faces(obj.data, mesh)]
+    meshes = [obj.data for obj in others if not obj.data.is_editmode and _share_faces(obj.data, mesh)]
     return tuple(exchange.read_mesh(other).vertices for other in meshes)
 
 

@@ -179,6 +179,14 @@ def test_bones_that_the_reference_does_not_have_yet_are_told(registered, capfd):
     assert "human has no armature of Eigenparts yet" in capfd.readouterr().out
 
 
+def test_a_reference_that_was_deleted_is_not_asked_for_bones(registered, capfd):
+    bpy.ops.object.select_all(action="DESELECT")
+    registered[0].select_set(True)
+    bpy.ops.object.delete()
+    assert len(create_armature_of(registered[1]).bones) > 10
+    assert "has no armature" not in capfd.readouterr().out
+
+
 @pytest.mark.parametrize("text", ["", "[]", '{"parts": 1}', '{"parts": [0], "root": [], "limbs": [{"tips": [1e999]}]}'])
 def test_a_damaged_layout_of_bones_is_passed_over(registered, text):
     registered[0].data["eigenparts_state"]["bone_layout"] = text

@@ -219,6 +219,17 @@ def test_every_operator_works_in_other_modes_or_says_why_not(analyzed, mode, ope
     draw_panels()
 
 
+@pytest.mark.parametrize("operator", sorted(set(ALL) - {"paint_part"}))
+def test_nothing_is_done_where_another_object_has_the_mesh_in_edit_mode(analyzed, operator):
+    other = analyzed.copy()
+    bpy.context.collection.objects.link(other)
+    bpy.context.view_layer.objects.active = other
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.context.view_layer.objects.active = analyzed
+    assert "Leave edit mode first" in outcome_of(operator)
+    draw_panels()
+
+
 def test_an_object_outside_the_view_layer_is_left_alone(analyzed, star):
     other = add_object(star.vertices, star.triangles, "other")
     bpy.context.collection.objects.unlink(analyzed)
