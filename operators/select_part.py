@@ -35,6 +35,8 @@ class EIGENPARTS_OT_select_part(bpy.types.Operator):
                 raise Refusal("The object is hidden; show it first.")
             use_active_part(self, mesh)
             is_selected = read_own_integers(mesh, PART) == self.part
+            if not is_selected.any():
+                raise Refusal(f"There is no part {self.part} at this level.")
             _select_faces(mesh, is_selected | selected_faces(mesh) if self.extend else is_selected)
             context.tool_settings.mesh_select_mode = (False, False, True)
             bpy.ops.object.mode_set(mode="EDIT")

@@ -75,6 +75,12 @@ def test_a_part_can_be_selected_for_editing(analyzed):
     np.testing.assert_array_equal(selected, labels == 3)
 
 
+def test_a_part_that_is_not_there_is_not_selected(analyzed):
+    with pytest.raises(RuntimeError, match="no part 99"):
+        bpy.ops.eigenparts.select_part(part=99)
+    assert analyzed.mode == "OBJECT"
+
+
 def test_parts_can_be_added_to_the_selection(analyzed):
     labels = values_of(analyzed.data, "part")
     bpy.ops.eigenparts.select_part(part=3)
