@@ -61,7 +61,7 @@ class Hierarchy:
 
     def checked_level(self, level: int) -> int:
         """Return the level, or say which levels there are."""
-        if not 0 <= level < self.n_levels:
+        if not 0 <= level < self.n_levels or level != int(level):
             raise LevelError(f"Level {level} does not exist; this shape has levels 0 to {self.n_levels - 1}.")
         return int(level)
 

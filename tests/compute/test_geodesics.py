@@ -40,6 +40,13 @@ def test_nothing_passes_to_a_loose_piece():
     np.testing.assert_allclose(smoothed(mesh, inside[:, None], width=5.0)[:, 0], inside, atol=1e-5)
 
 
+def test_the_widest_slope_is_the_mean():
+    mesh = icosphere(3)
+    soft = smoothed(mesh, (mesh.vertices[:, [2]] > 0.3).astype(float), width=1e30)
+    mass = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas / 3, 3))
+    np.testing.assert_allclose(soft, np.average(mesh.vertices[:, 2] > 0.3, weights=mass), rtol=1e-3)
+
+
 def test_a_width_of_zero_leaves_borders_hard():
     mesh = icosphere(2)
     labels = (mesh.vertices[:, 0] > 0).astype(np.int32) * 4

@@ -90,7 +90,7 @@ def test_a_threshold_says_which_pairs_stay():
     assert (hierarchy.persistence >= 0.3 * hierarchy.value_range).sum() == middle
 
 
-@pytest.mark.parametrize("level", [-1, 10_000])
+@pytest.mark.parametrize("level", [-1, 1.5, 10_000])
 def test_refuses_a_level_that_does_not_exist(level):
     mesh = icosphere(2)
     hierarchy, _ = build_hierarchy(topology_of(mesh, smooth_and_noisy_field(mesh, 0)), minima_are_features=True)
