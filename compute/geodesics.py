@@ -11,7 +11,7 @@ from .mesh import Bools, Floats, Ints, TriangleMesh
 
 # Heat that has spread for a time t from one side of a straight line falls from 90 % to 10 % over 2 ln 5 sqrt(t).
 WIDTH_OF_UNIT_TIME = 2 * np.log(5)
-# After this time, in areas of the mesh, heat is even on all but the thinnest threads; beyond it the equations say no more.
+# After this time, in areas of the mesh, heat is even on all but the thinnest threads; later nothing changes any more.
 LONGEST_TIME = 1e4
 # Weights below this are not worth a place in a vertex group.
 LEAST_WEIGHT = 1e-3
