@@ -22,18 +22,21 @@ class Format:
 
 
 def load(path: Path) -> list[bpy.types.Object]:
-    """Open a file in place of what is open now and return its mesh objects, each mesh once."""
+    """Open a file in place of what is open now and return its mesh objects that have faces, each mesh once."""
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise Refusal(f"files ending in {suffix!r} cannot be read; known are {' '.join(FORMATS)}.")
     if not path.is_file():
         raise Refusal("there is no such file.")
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    FORMATS[suffix].read(path)
+    # Blender looks for what is relative in the folder it was started in, whatever a script has changed to.
+    FORMATS[suffix].read(path.absolute())
     objects = {obj.data: obj for obj in reversed(bpy.data.objects) if obj.type == "MESH" and obj.data.library is None}
     if not objects:
         raise Refusal("there is no mesh in this file.")
-    return sorted(objects.values(), key=lambda obj: obj.name)
+    # Guides and the shapes of bones have no faces; where there are others, nobody wants these divided.
+    divisible = [obj for obj in objects.values() if obj.data.polygons]
+    return sorted(divisible or objects.values(), key=lambda obj: obj.name)
 
 
 def name_of_divided(source: Path) -> str:
@@ -49,7 +52,7 @@ def name_of_transferred(source: Path) -> str:
 
 def save(target: Path) -> None:
     """Write what is open now, in the format that the name says."""
-    with staged(target) as stage:
+    with staged(target.absolute()) as stage:
         FORMATS[target.suffix.lower()].write(stage)
 
 

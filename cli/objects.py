@@ -16,8 +16,9 @@ from .report import Report, part_rows
 
 
 def chosen(objects: list[bpy.types.Object], name: str | None) -> list[bpy.types.Object]:
-    """Return the object of that name, or all if there is none."""
-    found = [obj for obj in objects if name in (None, obj.name)]
+    """Return the object of that name, or the one that stands for its mesh; all if there is no name."""
+    named = {obj.data for obj in bpy.data.objects if obj.name == name}
+    found = [obj for obj in objects if name is None or obj.data in named]
     if not found:
         raise Refusal(f"there is no mesh object {name!r}; there are {', '.join(obj.name for obj in objects)}.")
     return found

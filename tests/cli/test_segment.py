@@ -119,15 +119,47 @@ def test_one_bad_file_does_not_stop_the_rest(run, star_off, tmp_path):
 
 def test_one_bad_object_does_not_stop_the_others_of_its_file(run, tmp_path):
     add_object(star(5, 3))
-    bpy.context.collection.objects.link(bpy.data.objects.new("empty", bpy.data.meshes.new("empty")))
+    point = add_object(icosphere(0), "point").data
+    point.vertices.foreach_set("co", np.zeros(3 * len(point.vertices)))
     path = tmp_path / "two.blend"
     EXPORTERS[".blend"](str(path))
     code, report, errors = run("segment", path, "--json")
     assert code == 1
     assert len(errors) == 1
-    assert "empty: The mesh has no faces" in errors[0]
+    assert "point: The faces of the mesh have no area" in errors[0]
     assert [len(row.get("parts", [])) for row in report["files"][0]["objects"]] == [0, 6]
     assert (tmp_path / "two_parts.blend").exists()
+
+
+def test_shapes_of_bones_are_no_bad_objects(run, tmp_path):
+    """They are meshes of edges, and every rigged character has some."""
+    add_object(star(5, 3))
+    EXPORTERS[".blend"](str(tmp_path / "character.blend"))
+    shape = bpy.data.meshes.new("shape")
+    shape.from_pydata([[0, 0, 0], [1, 0, 0]], [[0, 1]], [])
+    bpy.data.objects.new("shape", shape).use_fake_user = True
+    EXPORTERS[".blend"](str(tmp_path / "rigged.blend"))
+    code, report, _ = run("segment", tmp_path / "character.blend", tmp_path / "rigged.blend", "--json")
+    assert code == 0
+    assert [[row["name"] for row in file["objects"]] for file in report["files"]] == [["star"], ["star"]]
+
+
+def test_an_object_that_shares_its_mesh_can_be_chosen_by_either_name(run, tmp_path):
+    bpy.context.collection.objects.link(bpy.data.objects.new("twin", add_object(star(5, 3)).data))
+    EXPORTERS[".blend"](str(tmp_path / "twins.blend"))
+    for name in ("star", "twin"):
+        code, report, _ = run("segment", tmp_path / "twins.blend", "--object", name, "--json")
+        assert (code, len(report["files"][0]["objects"])) == (0, 1)
+
+
+def test_paths_are_relative_to_where_a_script_has_gone(run, tmp_path, monkeypatch):
+    add_object(star(5, 3))
+    EXPORTERS[".blend"](str(tmp_path / "star.blend"))
+    monkeypatch.chdir(tmp_path)
+    code, lines, _ = run("segment", "star.blend")
+    assert code == 0
+    assert lines[0].endswith("written to star_parts.blend")
+    assert (tmp_path / "star_parts.blend").exists()
 
 
 def test_an_object_can_be_chosen(run, tmp_path):
