@@ -4,13 +4,16 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from . import correcting, corrections, engine, paint_part, registered, results, state
+from . import correcting, corrections, engine, paint_part, part_table, registered, results, state
 from .custom_normals import normals_kept
 from .exchange import read_mesh
 from .mesh_cut import cut_mesh
 from .refusals import Refusal, can_use_active_mesh, refusals_told
 from .rollback import all_or_nothing, faces_or_nothing
 from .sentences import tell
+
+# A part that a cut changes by more than this fraction of the whole area is told of.
+NOTABLE_CHANGE = 0.05
 
 
 class EIGENPARTS_OT_cut(bpy.types.Operator):
@@ -36,12 +39,14 @@ class EIGENPARTS_OT_cut(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         with refusals_told(self):
             registered.refuse_registered(context.object.data)
-            n_before = len(context.object.data.polygons)
+            n_before, shares = len(context.object.data.polygons), _shares(context.object.data)
             with all_or_nothing(context.object.data), faces_or_nothing(context.object.data):
                 if self.method == "INSERT":
                     insert_borders(context.object)
                 else:
                     move_borders(context.object.data)
+            if self.method == "INSERT":
+                _tell_change(self, context.object.data, shares)
             n_new = len(context.object.data.polygons) - n_before
             tell(self, "INFO", f"{n_new} faces were added." if n_new else "The borders run along edges.")
             return {"FINISHED"}
@@ -105,6 +110,25 @@ def _face_graph(mesh: bpy.types.Mesh) -> "engine.FaceGraph":
     triangles = engine.TriangleMesh(arrays.vertices, arrays.triangles)
     surface = engine.analyzed_surface(triangles, state.shells_of(mesh))
     return engine.face_graph(triangles, surface, arrays.polygon_of_triangle)
+
+
+def _shares(mesh: bpy.types.Mesh) -> dict[int, float]:
+    return {part: share for part, share, _ in state.summarize(mesh).parts}
+
+
+def _tell_change(operator: bpy.types.Operator, mesh: bpy.types.Mesh, before: dict[int, float]) -> None:
+    """Tell which part a cut has changed most if that is notable: what hangs together within faces only falls apart."""
+    after = _shares(mesh)
+    change = {part: abs(after.get(part, 0.0) - before.get(part, 0.0)) for part in {**before, **after} if part}
+    part = max(change, key=change.__getitem__, default=0)
+    if part and change[part] > NOTABLE_CHANGE:
+        name, old, new = part_table.name_of(mesh, part), before.get(part, 0.0), after.get(part, 0.0)
+        tell(
+            operator,
+            "WARNING",
+            f"{name} had {old:.0%} of the area and has {new:.0%} now, as parts meet within single faces there; "
+            "undo and choose another level if it should not.",
+        )
 
 
 def _refuse_shared(obj: bpy.types.Object) -> None:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze
+from examples import humanoid
 from tests.blender.conftest import add_object, corner_normals_of, everything_on, give_custom_normals, values_of
 from tests.blender.test_analyze import two_triangles_a_polygon
 
@@ -113,6 +114,20 @@ def test_every_part_is_one_piece_and_the_numbers_stay(analyzed):
     assert analyzed.data.eigenparts.level == level
     assert [row.title for row in analyzed.data.eigenparts.rows] == titles
     assert set(values_of(analyzed.data, "part")) == set(range(len(titles)))
+
+
+@pytest.mark.parametrize(("level", "is_told"), [(3, True), (4, False)])
+def test_a_part_that_falls_apart_is_told(capfd, level, is_told):
+    """At level 3 the head and an arm of the symmetric body are one part, joined within single faces."""
+    character = humanoid(5000)
+    mesh = add_object(character.mesh_in_pose("rest"), character.quads).data
+    bpy.ops.eigenparts.analyze(order="1")
+    bpy.ops.eigenparts.segment(level=level)
+    n_before = np.bincount(values_of(mesh, "part"))
+    bpy.ops.eigenparts.cut()
+    n_after = np.bincount(values_of(mesh, "part"), minlength=len(n_before))
+    assert (n_after < 0.6 * n_before).any() == is_told
+    assert ("as parts meet within single faces there" in capfd.readouterr().out) == is_told
 
 
 def test_borders_lie_at_the_height_of_their_saddles(star):
