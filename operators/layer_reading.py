@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from . import exchange, layers, state
+from . import exchange, layers, material_slots, state
 from .attribute_values import STORAGES, read_attribute
 from .layers import Layer
 from .refusals import Refusal
@@ -131,12 +131,9 @@ def read_key(block: bpy.types.ShapeKey) -> np.ndarray:
 
 def _materials(obj: bpy.types.Object) -> Iterator[Layer]:
     mesh = obj.data
-    names = tuple(material.name if material else "" for material in mesh.materials)
+    names, indices = material_slots.assignment_of_user(mesh)
     if not names:
         return
-    indices = np.zeros(len(mesh.polygons), dtype=np.int32)
-    if "material_index" in mesh.attributes:
-        mesh.attributes["material_index"].data.foreach_get("value", indices)
     yield Layer(layers.MATERIAL, "materials", np.clip(indices, 0, len(names) - 1).reshape(-1, 1), "INT", names)
 
 

@@ -55,6 +55,17 @@ def remove(mesh: bpy.types.Mesh) -> None:
     del mesh[IS_WRITTEN]
 
 
+def assignment_of_user(mesh: bpy.types.Mesh) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return the names in the slots that are the user's, "" where a slot is empty, and the (F,) slot of each face."""
+    is_written = IS_WRITTEN in mesh
+    slots = [material for material in mesh.materials if not (is_written and _is_own(material))]
+    kept = mesh.attributes.get(PREVIOUS_MATERIAL.name if is_written else MATERIAL_INDEX)
+    indices = np.zeros(len(mesh.polygons), dtype=np.int32)
+    if kept is not None:
+        kept.data.foreach_get("value", indices)
+    return tuple(material.name if material else "" for material in slots), indices
+
+
 def slots_of(mesh: bpy.types.Mesh) -> list[Slot]:
     """Return the material of each slot that is the user's, and the part that it belongs to where it is ours."""
     return [_part_of(material) if _is_own(material) else material for material in mesh.materials]

@@ -159,6 +159,16 @@ def test_shape_keys_are_turned_with_the_surface(balls):
     np.testing.assert_allclose(np.median(delta, axis=0), [0, 0.5, 0], atol=0.05)
 
 
+def test_materials_of_parts_are_not_taken_for_those_of_the_user(rest, bent):
+    rest.data.materials.append(bpy.data.materials.new("Skin"))
+    bpy.ops.eigenparts.analyze()
+    bpy.ops.eigenparts.write_outputs(outputs={"MATERIALS"})
+    assert len(rest.data.materials) > 1
+    bpy.ops.eigenparts.transfer(layers={"MATERIALS"})
+    assert [material.name for material in bent.data.materials] == ["Skin"]
+    assert set(values_of(bent.data, "material_index")) == {0}
+
+
 def test_a_shape_key_that_starts_from_another_is_written_from_there(rest, bent):
     """What a key moves is the way from the key that it is relative to."""
     for obj, names in ((rest, ["Basis", "Push"]), (bent, ["Basis", "Twist", "Push"])):
