@@ -275,14 +275,15 @@ def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:
 def _from_root(chains: list[Chain], hubs: list[Hub], root: int) -> tuple[list[Chain], list[bool]]:
     """Return the chains in the order in which they are met from the root, each from its inner end."""
     reached, waiting, left = {root}, [root], list(chains)
+    number = {node: number for number, hub in enumerate(hubs) for node in hub.nodes}
     order: list[Chain] = []
     closes_loop: list[bool] = []
     while waiting:
         hub = waiting.pop(0)
-        for chain in [chain for chain in left if hub in (hub_number(hubs, chain.start), hub_number(hubs, chain.end))]:
+        for chain in [chain for chain in left if hub in (number.get(chain.start), number.get(chain.end))]:
             left.remove(chain)
-            order.append(chain if hub_number(hubs, chain.start) == hub else chain.reversed())
-            end = hub_number(hubs, order[-1].end)
+            order.append(chain if number.get(chain.start) == hub else chain.reversed())
+            end = number.get(order[-1].end, -1)
             closes_loop.append(end in reached)
             if end >= 0 and end not in reached:
                 reached.add(end)

@@ -93,18 +93,29 @@ def tips_on_sides(
     """
     place = {node: ~number for number, hub in enumerate(hubs) for node in hub.nodes}
     ends = [(place.get(chain.start, chain.start), place.get(chain.end, chain.end)) for chain in chains]
-    others = [[*ends[:row], *ends[row + 1 :]] for row in range(len(ends))]
+    around: dict[int, list[tuple[int, int]]] = {}
+    for row, (start, end) in enumerate(ends):
+        around.setdefault(start, []).append((row, end))
+        around.setdefault(end, []).append((row, start))
     return [
-        (_tips_from(start, left, part_of_tip), _tips_from(end, left, part_of_tip))
-        for (start, end), left in zip(ends, others, strict=True)
+        (_tips_from(start, row, around, part_of_tip), _tips_from(end, row, around, part_of_tip))
+        for row, (start, end) in enumerate(ends)
     ]
 
 
-def _tips_from(place: int, ends: list[tuple[int, int]], part_of_tip: Mapping[int, int]) -> Tips:
+def _tips_from(
+    place: int, left_out: int, around: Mapping[int, list[tuple[int, int]]], part_of_tip: Mapping[int, int]
+) -> Tips:
+    """Return the parts of the tips that are reached from a place by all chains but one.
+
+    Parameters
+    ----------
+    around : mapping of int to list of (int, int)
+        For each place the chains that touch it, each with its other end.
+    """
     reached, waiting = {place}, [place]
     while waiting:
-        at = waiting.pop()
-        beyond = {end for both in ends if at in both for end in both} - reached
+        beyond = {end for row, end in around[waiting.pop()] if row != left_out} - reached
         reached |= beyond
         waiting.extend(beyond)
     return frozenset(part_of_tip[end] for end in reached if end in part_of_tip)
