@@ -13,7 +13,16 @@ from .analyze import Ticket, find_mesh
 from .background import BackgroundOperator
 from .properties import AnalysisOptions
 from .refusals import Refusal, in_name_of, refuse_unwritable
-from .registration import SHOWN_FUNCTIONS, Found, Registration, Shown, Subject, Wish, register_subjects
+from .registration import (
+    CORRECTED_BEFORE,
+    SHOWN_FUNCTIONS,
+    Found,
+    Registration,
+    Shown,
+    Subject,
+    Wish,
+    register_subjects,
+)
 from .rollback import all_or_nothing
 from .sentences import tell
 from .viewport import show_vertex_colours
@@ -48,7 +57,7 @@ class Registers(BackgroundOperator):
         _refuse_registered(reference)
         subjects = [_read(context, obj, settings) for obj in (reference, *targets)]
         tickets = [Ticket(obj.data.session_uid, exchange.fingerprint(obj.data)) for obj in (reference, *targets)]
-        shown, first_free = _shown(reference.data), _first_free_label(context, reference, targets)
+        shown, first_free = _shown(reference), _first_free_label(context, reference, targets)
         work = partial(register_subjects, subjects[0], shown, subjects[1:], wish, first_free)
         names = tuple(obj.name for obj in targets)
         return work, Tickets(tickets[0], reference.session_uid, names, tuple(tickets[1:]), wish, settings)
@@ -123,10 +132,13 @@ def _read(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str,
         return Subject(obj.name, arrays, analysis_options(obj.data, **options))
 
 
-def _shown(mesh: bpy.types.Mesh) -> Shown:
+def _shown(reference: bpy.types.Object) -> Shown:
+    mesh = reference.data
     try:
         return Shown(state.summarize(mesh).level, state.mode_of(mesh), correcting.load(mesh))
     except Refusal:
+        if correcting.items_of(mesh):
+            raise Refusal(CORRECTED_BEFORE.format(reference.name)) from None
         return Shown(None, state.mode_of(mesh), None)
 
 

@@ -11,11 +11,15 @@ from . import engine, recent_analyses
 from .analyze import Outcome, outcome_of
 from .exchange import MeshArrays
 from .recent import Recent, key_of
-from .refusals import in_name_of
+from .refusals import Refusal, in_name_of
 from .state import StoredAnalysis
 
 # Functions whose signs can be given, and that are shown.
 SHOWN_FUNCTIONS = 8
+CORRECTED_BEFORE = (
+    "{} was corrected by hand, and then edited, cut or analyzed with other settings; "
+    "analyze it with these settings first, so that all get its corrections."
+)
 Progress = Callable[[float, str], None]
 # Of shapes that are kept: points, 1 kB of memory each. Of matchings: how many.
 RECENT_POINTS = 100_000
@@ -136,7 +140,7 @@ def register_subjects(
     n_steps = 2 * len(targets) + 1
     # All are analyzed first: what cannot be is told before the longer part begins.
     own, *others = (_examine(target, _step(progress, k, n_steps)) for k, target in enumerate((reference, *targets)))
-    labels, faces = _division(shown, own)
+    labels, faces = _division(shown, own, reference.name)
     prepared = engine.with_parts(own.shape, faces, labels.parts, labels.level)
     first_free = max(first_free, int(labels.parts.id.max()) + 1)
     found = []
@@ -180,12 +184,14 @@ def _flat(options: Mapping[str, Any]) -> list[Any]:
     return [item for pair in sorted(options.items()) for item in pair]
 
 
-def _division(shown: Shown, reference: Examined) -> tuple["engine.BranchLabels", np.ndarray]:
+def _division(shown: Shown, reference: Examined, name: str) -> tuple["engine.BranchLabels", np.ndarray]:
     """Return the parts that a reference shows, with what was corrected by hand, and the part of each face."""
     hierarchy, branches = reference.shape.hierarchy, reference.shape.branches
     level = corrections = None
     if shown.analysis is not None and _has_trees(shown.analysis.hierarchy, hierarchy):
         level, branches, corrections = shown.level, shown.analysis.branches, shown.analysis.corrections
+    elif shown.analysis is not None and shown.analysis.corrections is not None and shown.analysis.corrections.items:
+        raise Refusal(CORRECTED_BEFORE.format(name))
     labels = engine.label_branches(hierarchy, branches, level=level, mode=shown.mode, corrections=corrections)
     return labels, labels.of_faces(branches).astype(np.int64)
 

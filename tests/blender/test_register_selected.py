@@ -347,3 +347,22 @@ def test_parts_that_were_corrected_by_hand_are_registered_too(rest, fist):
     np.testing.assert_array_equal(values_of(rest.data, "part"), labels)
     assert set(values_of(fist.data, "part")) == set(labels)
     assert agreement(rest, fist) > 0.93
+
+
+def cut(rest):
+    bpy.ops.eigenparts.cut()
+
+
+def edit(rest):
+    rest.data.vertices[0].co.z += 1e-3
+
+
+@pytest.mark.parametrize("change", [cut, edit])
+def test_corrections_of_another_analysis_are_not_kept_for_the_reference_alone(rest, fist, change):
+    bpy.ops.eigenparts.split_part(part=1)
+    change(rest)
+    with pytest.raises(RuntimeError, match="analyze it with these settings first"):
+        bpy.ops.eigenparts.register_selected()
+    bpy.ops.eigenparts.analyze()
+    bpy.ops.eigenparts.register_selected()
+    assert set(values_of(fist.data, "part")) == set(values_of(rest.data, "part"))

@@ -142,6 +142,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     'The vertex group "{}" is locked; unlock it first.': "Die Punktgruppe „{}“ ist gesperrt; zuerst entsperren.",
     'There is no vertex group "{}" to be used as the mask.': "Es gibt keine Punktgruppe „{}“, die als Maske dienen könnte.",
     "{} had {} of the area and has {} now, as parts meet within single faces there; undo and choose another level if it should not.": "{} hatte {} der Fläche und hat jetzt {}, da sich Teile dort in einzelnen Flächen treffen; rückgängig machen und eine andere Stufe wählen, falls das nicht sein soll.",
+    "{} was corrected by hand, and then edited, cut or analyzed with other settings; analyze it with these settings first, so that all get its corrections.": "{} wurde von Hand berichtigt und danach bearbeitet, geschnitten oder mit anderen Einstellungen analysiert; zuerst mit diesen Einstellungen analysieren, damit alle die Berichtigungen bekommen.",
     'The attribute "{}" here is from Eigenparts; take it back, or rename the other one.': "Das Attribut „{}“ hier ist von Eigenparts; es zurücknehmen oder das andere umbenennen.",
     'There is an attribute "{}" of another kind; rename one of them.': "Es gibt ein Attribut „{}“ anderer Art; eines von beiden umbenennen.",
     "A mesh can have {} UV maps; delete some first.": "Ein Netz kann {} UV-Karten haben; zuerst einige löschen.",
