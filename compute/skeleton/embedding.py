@@ -1,6 +1,6 @@
 """The skeleton: the Reeb graph of the field, cleared of what is no limb and laid into the mesh."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..mesh import Bools, Floats, Ints
 from ..msc.reeb import ReebGraph
 from ..segmentation.parts import BODY
 from .branching import Chain, chains_between
-from .hubs import Hub, gathered_hubs, hub_number, joined_hubs
+from .hubs import Hub, gathered_hubs, hub_numbers, joined_hubs
 from .interior import Interior
 from .layout import BoneLayout, Tips, layout_of, level_with_tips, root_of_layout, tips_on_sides, with_layout
 from .limbs import Ends, Limb, lay_limb, trace_limb, with_equal_joints
@@ -196,9 +196,10 @@ def _plan(
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
     nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
+    number = hub_numbers(hubs)
     ends, centres = [], centres.copy()
     for chain in order:
-        start, end = hub_number(hubs, chain.start), hub_number(hubs, chain.end)
+        start, end = number[chain.start], number.get(chain.end, -1)
         if end >= 0:
             place, part = hubs[end].places, parts[end]
         else:
@@ -240,27 +241,29 @@ def _with_middle(
             Chain(MIDDLE, chain.start, chain.slices[: half + 1][::-1]),
             Chain(MIDDLE, chain.end, chain.slices[half:]),
         ]
-    return [_outward(chain, tips) for chain in chains if not _is_inside(chain, hubs)], hubs
+    number = hub_numbers(hubs)
+    return [_outward(chain, tips) for chain in chains if not _is_inside(chain, number)], hubs
 
 
 def _outward(chain: Chain, tips: set[int]) -> Chain:
     return chain.reversed() if chain.start in tips else chain
 
 
-def _is_inside(chain: Chain, hubs: list[Hub]) -> bool:
-    """Whether a chain was gathered into a hub; a loop of its own at a node was not."""
-    start, end = hub_number(hubs, chain.start), hub_number(hubs, chain.end)
+def _is_inside(chain: Chain, number: Mapping[int, int]) -> bool:
+    """Whether a chain was gathered into a hub, given those of nodes; a loop of its own at a node was not."""
+    start, end = number.get(chain.start, -1), number.get(chain.end, -1)
     return start == end >= 0 and chain.start != chain.end
 
 
 def _root(chains: list[Chain], hubs: list[Hub], slices: Slices) -> int:
     """Return the hub farthest from the bluntest limb: the hips, as that limb is the head in most cases."""
+    number = hub_numbers(hubs)
     blunt = max(
-        (chain for chain in chains if hub_number(hubs, chain.end) < 0),
+        (chain for chain in chains if chain.end not in number),
         key=lambda chain: float(np.median(slices.radius[chain.slices]) / slices.length[chain.slices].sum()),
         default=chains[0],
     )
-    head = hubs[hub_number(hubs, blunt.start)].places[0]
+    head = hubs[number.get(blunt.start, -1)].places[0]
     return int(np.argmax([np.linalg.norm(hub.places[0] - head) for hub in hubs]))
 
 
@@ -275,7 +278,7 @@ def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:
 def _from_root(chains: list[Chain], hubs: list[Hub], root: int) -> tuple[list[Chain], list[bool]]:
     """Return the chains in the order in which they are met from the root, each from its inner end."""
     reached, waiting, left = {root}, [root], list(chains)
-    number = {node: number for number, hub in enumerate(hubs) for node in hub.nodes}
+    number = hub_numbers(hubs)
     order: list[Chain] = []
     closes_loop: list[bool] = []
     while waiting:

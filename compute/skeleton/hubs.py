@@ -1,5 +1,6 @@
 """Hubs: where limbs meet. Nodes of the graph that lie within each other's flesh are one."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,9 +106,9 @@ def joined_hubs(
     return [_hub_at(hub, around, slices, centres) for hub in sorted(set(hub_of.values()), key=min)]
 
 
-def hub_number(hubs: list[Hub], node: int) -> int:
-    """Return the number of the hub that a node belongs to, -1 for a tip."""
-    return next((number for number, hub in enumerate(hubs) if node in hub.nodes), -1)
+def hub_numbers(hubs: Sequence[Hub]) -> dict[int, int]:
+    """Return the number of the hub that each node belongs to; tips belong to none."""
+    return {node: number for number, hub in enumerate(hubs) for node in hub.nodes}
 
 
 def _chains_around(chains: list[Chain]) -> dict[int, list[Chain]]:

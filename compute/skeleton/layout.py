@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..analysis import Analysis
 from ..mesh import Floats, Ints
 from .branching import Chain
-from .hubs import Hub, hub_number
+from .hubs import Hub, hub_numbers
 from .limbs import Trace, lay_limb
 from .slices import Slices
 
@@ -91,7 +91,7 @@ def tips_on_sides(
 
     The nodes of a hub are one place.
     """
-    place = {node: ~number for number, hub in enumerate(hubs) for node in hub.nodes}
+    place = {node: ~number for node, number in hub_numbers(hubs).items()}
     ends = [(place.get(chain.start, chain.start), place.get(chain.end, chain.end)) for chain in chains]
     around: dict[int, list[tuple[int, int]]] = {}
     for row, (start, end) in enumerate(ends):
@@ -139,12 +139,12 @@ def level_with_tips(analysis: Analysis, labels: NDArray[np.int32], tips: Tips, l
 def root_of_layout(layout: BoneLayout, chains: list[Chain], hubs: list[Hub], sides: list[tuple[Tips, Tips]]) -> int:
     """Return the hub that has most of the root's limbs, -1 if none has any."""
     shared: Counter[int] = Counter()
+    number = hub_numbers(hubs)
     for chain, (before, beyond) in zip(chains, sides, strict=True):
         for node, tips in ((chain.start, beyond), (chain.end, before)):
-            number = hub_number(hubs, node)
-            if number >= 0 and tips in layout.root:
-                shared[number] += 1
-    return max(sorted(shared), key=lambda number: shared[number], default=-1)
+            if node in number and tips in layout.root:
+                shared[number[node]] += 1
+    return max(sorted(shared), key=lambda hub: shared[hub], default=-1)
 
 
 def with_layout(traces: list[Trace], sides: list[tuple[Tips, Tips]], layout: BoneLayout) -> list[Trace]:
