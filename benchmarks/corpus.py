@@ -96,7 +96,7 @@ def try_file(path: Path) -> dict[str, Any]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     load_extension().register()
     from eigenparts.cli import formats
-    from eigenparts.operators.refusals import Refusal
+    from eigenparts.operators.messages.user_errors import Refusal
 
     try:
         objects = formats.load(path)
@@ -156,7 +156,7 @@ def every_level(obj: Any) -> None:
     """Show every level in both modes, and end at the default one."""
     import bpy
 
-    from eigenparts.operators import state
+    from eigenparts.operators.mesh_state import state
 
     _select(obj)
     n_levels = state.summarize(obj.data).n_levels if state.is_analyzed(obj.data) else 0

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from compute.fem.lagrange import reference_element
-from compute.mesh import Floats, Ints, TriangleMesh
-from compute.registration.surface_points import nearest_in_triangles
+from compute.registration.dense.surface_points import nearest_in_triangles
+from compute.surface.mesh import Floats, Ints, TriangleMesh
 
 # Folder and stem of the files; the poses of a family share vertices and faces.
 FAMILIES = {

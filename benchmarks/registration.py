@@ -28,10 +28,10 @@ from benchmarks.registration_peers import (
 )
 from benchmarks.registration_truth import JUDGED_FUNCTIONS, Copy, make_copy, map_error, misplaced
 from compute.analysis import analyze
-from compute.mesh import Ints, TriangleMesh
-from compute.registration.matching import Matching, match_shapes
-from compute.registration.spectral_shape import spectral_shape
-from compute.registration.zoomout import nearest_points, with_constant
+from compute.registration.eigenfunctions.matching import Matching, match_shapes
+from compute.registration.eigenfunctions.spectral_shape import spectral_shape
+from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
+from compute.surface.mesh import Ints, TriangleMesh
 
 # A pair is right when the map of the first functions is within this distance of the truth, relative to the identity,
 # and less than this share of the area lands on the mirrored side.

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 
 from benchmarks.registration_truth import Copy
-from compute.mesh import Floats, Ints, TriangleMesh
+from compute.surface.mesh import Floats, Ints, TriangleMesh
 
 # As in pyFM's own example.
 N_FUNCTIONS = 35

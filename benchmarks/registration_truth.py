@@ -12,8 +12,8 @@ import numpy as np
 from benchmarks.posed_families import Mirror, Pose, SurfacePoints, closest_points, decimated, remeshed
 from compute.analysis import Analysis, analyze
 from compute.fem.lagrange import reference_element
-from compute.mesh import Floats, Ints, TriangleMesh
-from compute.registration.spectral_shape import SpectralShape, spectral_shape
+from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape
+from compute.surface.mesh import Floats, Ints, TriangleMesh
 
 # Functions that a map is judged by.
 JUDGED_FUNCTIONS = 10

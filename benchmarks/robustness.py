@@ -21,7 +21,7 @@ from scipy.optimize import linear_sum_assignment
 
 from benchmarks.posed_families import closest_points, decimated, load_family, remeshed, shuffled
 from compute import TriangleMesh, analyze
-from compute.mesh import Floats, Ints
+from compute.surface.mesh import Floats, Ints
 from examples import humanoid
 
 FAMILIES = ("makehuman", "wolf", "hand")

@@ -18,7 +18,7 @@ from scipy.cluster.vq import kmeans2
 
 from benchmarks.posed_families import read_mesh
 from compute import Analysis, TriangleMesh, analyze
-from compute.mesh import Ints
+from compute.surface.mesh import Ints
 
 # Thresholds between which the default would be chosen if one kind of shape were left out.
 THRESHOLDS = (0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.1)

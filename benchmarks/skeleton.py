@@ -22,7 +22,7 @@ import numpy as np
 
 from benchmarks.posed_families import read_mesh
 from compute import TriangleMesh, analyze, binding_weights, skeleton
-from compute.mesh import Floats
+from compute.surface.mesh import Floats
 from examples import humanoid, octopus, quadruped
 
 NEAR = 0.05

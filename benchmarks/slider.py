@@ -78,7 +78,7 @@ def _correct(obj: bpy.types.Object) -> None:
 
 
 def _row(mesh: bpy.types.Mesh, seconds: list[float], corrected: float) -> str:
-    from eigenparts.operators.exchange import fingerprint
+    from eigenparts.operators.mesh_data.mesh_arrays import fingerprint
 
     start = time.perf_counter()
     fingerprint(mesh)

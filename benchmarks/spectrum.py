@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.spectrum_solvers import SOLVERS, bumpy_sphere, read_obj, subdivide, tetrahedron, versions
-from compute.mesh import TriangleMesh
+from compute.surface.mesh import TriangleMesh
 
 BODY = "makehuman/mh_body_0_rest.obj"
 

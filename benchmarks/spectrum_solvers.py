@@ -17,7 +17,7 @@ from benchmarks.peers import versions_of
 from compute.fem.assembly import mass_matrix, stiffness_matrix
 from compute.fem.eigenbasis import solve_eigenbasis
 from compute.fem.space import function_space
-from compute.mesh import Floats, TriangleMesh
+from compute.surface.mesh import Floats, TriangleMesh
 
 SHIFT = -4.0
 

@@ -5,7 +5,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from benchmarks.posed_families import SurfacePoints
-from compute.mesh import Floats, Ints, TriangleMesh
+from compute.surface.mesh import Floats, Ints, TriangleMesh
 
 # Path searches that are done at once, which bounds the memory.
 CHUNK = 256

@@ -19,10 +19,10 @@ import numpy as np
 from compute import TriangleMesh
 from compute.fem.lagrange import reference_element
 from compute.fem.space import function_space
-from compute.mesh import Floats
 from compute.msc.links import links_of
 from compute.msc.morse_smale import FieldTopology
-from compute.segmentation.hierarchy import build_hierarchy
+from compute.segmentation.hierarchy.levels import build_hierarchy
+from compute.surface.mesh import Floats
 from examples import humanoid
 
 # Vertices of the meshes; a closed net of cubic elements has 9 times as many.

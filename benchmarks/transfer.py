@@ -23,10 +23,10 @@ from benchmarks.posed_families import FAMILIES, Pose, SurfacePoints, closest_poi
 from benchmarks.registration_peers import FIT, N_FUNCTIONS
 from benchmarks.registration_truth import MIDDLE, Copy, make_copy
 from benchmarks.surface_distances import SurfaceDistances
-from compute.mesh import Floats, Ints, TriangleMesh
-from compute.registration.correspondence import correspond
-from compute.registration.matching import match_shapes
-from compute.registration.spectral_shape import spectral_shape
+from compute.registration.dense.correspondence import correspond
+from compute.registration.eigenfunctions.matching import match_shapes
+from compute.registration.eigenfunctions.spectral_shape import spectral_shape
+from compute.surface.mesh import Floats, Ints, TriangleMesh
 
 KINDS = ("remeshed", "decimated")
 OURS, PEER, NEAREST = "ours", "pyFM", "nearest in space"

@@ -5,15 +5,15 @@ from collections.abc import Sequence
 
 import bpy
 
-from ..operators import engine
+from ..operators.messages.user_errors import MISSING_SCIPY, is_engine_complete
 
 _handles: list[object] = []
 
 
 def main(argv: Sequence[str]) -> int:
     """Run one command and return its exit code: 0, 1 if a file failed, 2 if the arguments are wrong."""
-    if not engine.is_complete():
-        sys.stderr.write(engine.MISSING_SCIPY + "\n")
+    if not is_engine_complete():
+        sys.stderr.write(MISSING_SCIPY + "\n")
         return 1
     # The engine takes its time to load, and Blender starts often without this being called.
     from .arguments import parse

@@ -4,11 +4,11 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..operators.refusals import Refusal
-from .finished import finished_report, is_result
+from ..operators.messages.user_errors import Refusal
 from .formats import FORMATS, name_of_divided
 from .jobs import Job
 from .report import Report
+from .resume import finished_report, is_result
 
 
 def find_jobs(options: argparse.Namespace) -> list[Job]:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import bpy
 
-from ..operators.refusals import Refusal
+from ..operators.messages.user_errors import Refusal
+from .atomic_write import staged
 from .materials import give_parts_materials
 from .off import read_off, write_off
-from .staging import staged
 
 
 @dataclass(frozen=True)

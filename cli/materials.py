@@ -3,10 +3,10 @@
 import bpy
 import numpy as np
 
-from ..operators import part_table, state
-from ..operators.exchange import read_own_integers
-from ..operators.results import PART
-from .names import name_of_part, names_of_parts
+from ..operators.mesh_data.mesh_arrays import read_own_integers
+from ..operators.mesh_state import part_table, state
+from ..operators.outputs.part_writer import PART
+from .part_names import name_of_part, names_of_parts
 
 
 def give_parts_materials() -> None:

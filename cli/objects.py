@@ -7,11 +7,11 @@ from typing import Any
 import bpy
 
 from ..compute.errors import EngineError
-from ..compute.segmentation.parts import BranchLabels
-from ..operators import state
-from ..operators.analysis_request import analysis_options
-from ..operators.analyze import Outcome
-from ..operators.refusals import Refusal
+from ..compute.segmentation.parts.part_labels import BranchLabels
+from ..operators.mesh_state import state
+from ..operators.messages.user_errors import Refusal
+from ..operators.parts.analysis_request import analysis_options
+from ..operators.parts.analyze import Outcome
 from .report import Report, part_rows
 
 

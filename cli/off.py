@@ -5,10 +5,10 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..operators import part_table, state
-from ..operators.exchange import read_own_integers
-from ..operators.refusals import Refusal
-from ..operators.results import PART
+from ..operators.mesh_data.mesh_arrays import read_own_integers
+from ..operators.mesh_state import part_table, state
+from ..operators.messages.user_errors import Refusal
+from ..operators.outputs.part_writer import PART
 
 
 def read_off(path: Path) -> None:

@@ -1,5 +1,7 @@
 """The command ``register``: each mesh divided into the parts of a reference."""
 
+from __future__ import annotations
+
 import argparse
 import time
 from dataclasses import dataclass
@@ -10,15 +12,19 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..operators import engine, exchange, registered, results, state
-from ..operators.analyze import Outcome, outcome_of
-from ..operators.refusals import Refusal
-from ..operators.registering import match_of
-from ..operators.registration import Found, Wish, register_analyzed
+from .. import compute
+from ..compute.errors import EngineError
+from ..operators.mesh_data import mesh_arrays
+from ..operators.mesh_state import registration_record, state
+from ..operators.messages.user_errors import Refusal
+from ..operators.outputs import part_writer
+from ..operators.parts.analyze import Outcome, outcome_of
+from ..operators.registration.register_meshes import Found, Wish, register_analyzed
+from ..operators.registration.registering import match_of
 from . import formats
-from .finished import digest_of
 from .objects import analysis_settings, chosen, engine_options, report_each, row_of, store
 from .report import Report
+from .resume import digest_of
 from .segmenting import choice_of
 
 
@@ -35,7 +41,7 @@ class Reference:
     level : int
     mode : str
         What it shows.
-    prepared : engine.Reference
+    prepared : compute.Reference
         What others are matched with.
     tables : dict
         Names and colours of its parts.
@@ -45,7 +51,7 @@ class Reference:
     outcome: Outcome
     level: int
     mode: str
-    prepared: "engine.Reference"
+    prepared: compute.Reference
     tables: dict[str, Any]
 
     @property
@@ -87,20 +93,20 @@ class Register:
     def _reference(self) -> Reference:
         try:
             return _prepare(self._options)
-        except (Refusal, engine.EngineError) as error:
+        except (Refusal, EngineError) as error:
             raise Refusal(f"the reference {self._options.source}: {error}") from error
 
     def _show(self, obj: bpy.types.Object) -> Report:
         """Divide the reference itself."""
         reference = self._reference
         warnings = store(obj.data, reference.outcome)
-        labels = results.segment_mesh(obj.data, level=reference.level, mode=reference.mode)
+        labels = part_writer.segment_mesh(obj.data, level=reference.level, mode=reference.mode)
         return row_of(obj, labels, reference.outcome, warnings)
 
     def _divide(self, obj: bpy.types.Object, reference_object: bpy.types.Object | None = None) -> Report:
         """Give a mesh the parts of the reference, which is an object of the same file or of another."""
         reference, mesh = self._reference, obj.data
-        results.refuse_foreign_results(mesh)
+        part_writer.refuse_foreign_results(mesh)
         analysis, outcome = _analyze(mesh, self._options)
         first_free = max(self._first_free, reference.highest_label + 1)
         found = register_analyzed(reference.prepared, analysis, outcome, self._wish, first_free)
@@ -108,8 +114,8 @@ class Register:
         warnings = store(mesh, outcome)
         settings = {**analysis_settings(self._options), "use_modifiers": False}
         match = match_of(found, reference.name, self._wish, settings)
-        registered.remember(mesh, reference.tables, match, reference_object)
-        results.show_labels(mesh, found.labels, outcome.stored.branches, reference.mode)
+        registration_record.remember(mesh, reference.tables, match, reference_object)
+        part_writer.show_labels(mesh, found.labels, outcome.stored.branches, reference.mode)
         return self._row(obj, found, warnings)
 
     def _row(self, obj: bpy.types.Object, found: Found, warnings: tuple[str, ...]) -> Report:
@@ -122,19 +128,19 @@ class Register:
 def _prepare(options: argparse.Namespace) -> Reference:
     obj = chosen(formats.load(options.source), options.reference)[0]
     mesh = obj.data
-    results.refuse_foreign_results(mesh)
-    registered.refuse_registered(mesh)
+    part_writer.refuse_foreign_results(mesh)
+    registration_record.refuse_registered(mesh)
     mode = options.mode or state.mode_of(mesh)
     shown = _shown_level(mesh)
     analysis, outcome = _analyze(mesh, options)
     store(mesh, outcome)
     choice = choice_of(options) or ({"level": shown} if shown is not None else {})
-    labels = results.segment_mesh(mesh, mode=mode, **choice)
-    shape = engine.divisible(analysis, engine.matching_shape(analysis), outcome.polygon_of_triangle)
+    labels = part_writer.segment_mesh(mesh, mode=mode, **choice)
+    shape = compute.divisible(analysis, compute.matching_shape(analysis), outcome.polygon_of_triangle)
     # As they are shown, with what the user corrected.
-    faces = exchange.read_own_integers(mesh, results.PART).astype(np.int64)
-    prepared = engine.with_parts(shape, faces, labels.parts, labels.level)
-    return Reference(obj.name, outcome, labels.level, mode, prepared, registered.tables_of(mesh))
+    faces = mesh_arrays.read_own_integers(mesh, part_writer.PART).astype(np.int64)
+    prepared = compute.with_parts(shape, faces, labels.parts, labels.level)
+    return Reference(obj.name, outcome, labels.level, mode, prepared, registration_record.tables_of(mesh))
 
 
 def _shown_level(mesh: bpy.types.Mesh) -> int | None:
@@ -146,8 +152,8 @@ def _shown_level(mesh: bpy.types.Mesh) -> int | None:
         return None
 
 
-def _analyze(mesh: bpy.types.Mesh, given: argparse.Namespace) -> tuple["engine.Analysis", Outcome]:
+def _analyze(mesh: bpy.types.Mesh, given: argparse.Namespace) -> tuple[compute.Analysis, Outcome]:
     start = time.perf_counter()
-    arrays, options = exchange.read_mesh(mesh), engine_options(mesh, given)
-    analysis = engine.analyze(engine.TriangleMesh(arrays.vertices, arrays.triangles), **options)
+    arrays, options = mesh_arrays.read_mesh(mesh), engine_options(mesh, given)
+    analysis = compute.analyze(compute.TriangleMesh(arrays.vertices, arrays.triangles), **options)
     return analysis, outcome_of(analysis, arrays, options, time.perf_counter() - start)

@@ -8,10 +8,10 @@ from typing import Any
 import bpy
 
 from ..compute.errors import EngineError
-from ..compute.segmentation.parts import BranchLabels
-from ..operators.refusals import Refusal
-from .names import name_of_part, names_of_parts
-from .staging import staged
+from ..compute.segmentation.parts.part_labels import BranchLabels
+from ..operators.messages.user_errors import Refusal
+from .atomic_write import staged
+from .part_names import name_of_part, names_of_parts
 
 # Raised when the layout of the report changes; report.schema.json describes it.
 VERSION = 1

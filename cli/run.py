@@ -5,17 +5,17 @@ from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import TextIO
 
-from ..operators.refusals import Refusal
+from ..operators.messages.user_errors import Refusal
 from . import batch
 from .formats import name_of_divided, name_of_transferred
 from .jobs import Job, in_the_way, jobs_of_files
-from .processes import cluster_crew, local_crew
+from .process_pool import cluster_crew, local_crew
 from .registering import Register
 from .report import Report
+from .reporters import ProgressLine, teller_for
+from .run_serial import Command, failed, work_here
 from .segmenting import Segment
-from .telling import ProgressLine, teller_for
 from .transferring import Transfer
-from .work import Command, failed, work_here
 
 
 def carry_out(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:

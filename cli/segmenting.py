@@ -7,8 +7,9 @@ from typing import Any
 import bpy
 
 from ..compute.progress import silent
-from ..operators import exchange, results
-from ..operators.analyze import analyze_arrays
+from ..operators.mesh_data import mesh_arrays
+from ..operators.outputs import part_writer
+from ..operators.parts.analyze import analyze_arrays
 from . import formats
 from .objects import chosen, engine_options, report_each, row_of, store
 from .report import Report
@@ -33,10 +34,10 @@ class Segment:
 
     def _divide(self, obj: bpy.types.Object) -> Report:
         mesh = obj.data
-        results.refuse_foreign_results(mesh)
-        outcome = analyze_arrays(exchange.read_mesh(mesh), engine_options(mesh, self._options), silent)
+        part_writer.refuse_foreign_results(mesh)
+        outcome = analyze_arrays(mesh_arrays.read_mesh(mesh), engine_options(mesh, self._options), silent)
         warnings = store(mesh, outcome)
-        labels = results.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))
+        labels = part_writer.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))
         return row_of(obj, labels, outcome, warnings)
 
 

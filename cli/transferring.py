@@ -11,17 +11,18 @@ import numpy as np
 
 from ..compute.errors import EngineError
 from ..compute.progress import silent
-from ..operators import exchange, part_table, registered
-from ..operators.layer_reading import Choice, read_layers
-from ..operators.layer_transferring import Body, Transferred, transfer_bodies
-from ..operators.layer_writing import Mix, refuse_obstacles, write_layers
-from ..operators.layers import PARTS, Layer
-from ..operators.refusals import Refusal
-from ..operators.transfer import body_of
+from ..operators.mesh_data import mesh_arrays
+from ..operators.mesh_state import part_table, registration_record
+from ..operators.messages.user_errors import Refusal
+from ..operators.transfer.layer_reading import Choice, read_layers
+from ..operators.transfer.layer_transferring import Body, Transferred, transfer_bodies
+from ..operators.transfer.layer_writing import Mix, refuse_obstacles, write_layers
+from ..operators.transfer.layers import PARTS, Layer
+from ..operators.transfer.transfer import body_of
 from . import formats
-from .finished import digest_of
 from .objects import chosen, report_each
 from .report import Report
+from .resume import digest_of
 
 WHOLLY = Mix(1.0, "")
 
@@ -98,12 +99,14 @@ def _read_source(options: argparse.Namespace) -> Source:
 
 
 def _body(obj: bpy.types.Object) -> Body:
-    return body_of(obj, exchange.read_mesh(obj.data))
+    return body_of(obj, mesh_arrays.read_mesh(obj.data))
 
 
 def _row(obj: bpy.types.Object, source: Source, result: Transferred) -> Report:
     torn = [f'the seams of "{name}" could not be kept, there are too many pieces.' for name in result.torn_seams]
-    unsure = [f"matched with a confidence of {result.confidence:.0%} only."] * (result.confidence <= registered.SURE)
+    unsure = [f"matched with a confidence of {result.confidence:.0%} only."] * (
+        result.confidence <= registration_record.SURE
+    )
     return {
         "name": obj.name,
         "source": source.name,

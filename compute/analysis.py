@@ -9,28 +9,35 @@ from numpy.typing import ArrayLike
 
 from .errors import LevelError, RegistrationError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
-from .field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
-from .fields import DIFFUSION, Net, ScalarField, eigenfunction_field
-from .matching_basis import solve_for_matching
-from .mesh import Floats, Ints, TriangleMesh
+from .fem.matching_basis import solve_for_matching
+from .fields.field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
+from .fields.scalar_field import DIFFUSION, Net, ScalarField, eigenfunction_field
+from .fields.shell_fields import choose_fields
 from .msc.diagram import PersistenceDiagram
 from .msc.links import links_of
 from .msc.morse_smale import FieldTopology, MorseSmaleComplex
 from .msc.reeb import ReebGraph
 from .progress import Progress, rising, section, silent
-from .segmentation.arc_areas import arc_areas
-from .segmentation.borders import Polyline, closing_heights, cross_edges, part_of_border, trace_borders
-from .segmentation.branches import Branches, build_branches
-from .segmentation.faces import face_graph
-from .segmentation.hierarchy import Hierarchy, build_hierarchy
-from .segmentation.necks import measured
-from .segmentation.parts import Segmentation, cut_arcs, label_branches
-from .segmentation.profile import EdgeProfile, edge_profile
-from .segmentation.shell_bodies import with_bodies
-from .segmentation.subparts import inserted
-from .segmentation.zero_level import divide_at_zero
-from .shell_fields import choose_fields
-from .surface import Surface, analyzed_surface, clean_surface
+from .segmentation.borders.edge_profile import EdgeProfile, edge_profile
+from .segmentation.borders.level_set_borders import (
+    Polyline,
+    closing_heights,
+    cross_edges,
+    part_of_border,
+    trace_borders,
+)
+from .segmentation.faces.arc_areas import arc_areas
+from .segmentation.faces.branches import Branches, build_branches
+from .segmentation.faces.face_graph import face_graph
+from .segmentation.faces.level_cuts import cut_arcs
+from .segmentation.hierarchy.levels import Hierarchy, build_hierarchy
+from .segmentation.hierarchy.necks import measured
+from .segmentation.hierarchy.shell_bodies import with_bodies
+from .segmentation.parts.part_labels import Segmentation, label_branches
+from .segmentation.parts.subparts import inserted
+from .segmentation.parts.zero_level import divide_at_zero
+from .surface.cleaning import Surface, analyzed_surface, clean_surface
+from .surface.mesh import Floats, Ints, TriangleMesh
 
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.

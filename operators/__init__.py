@@ -1,41 +1,11 @@
-"""Everything a user can do: one module for each action, and what the actions share."""
+"""Everything a user can do, in one room for each purpose; each imports those that stand before it here.
+
+messages, mesh_data, mesh_state, outputs, jobs, parts, corrections, registration, transfer, armature, topology, settings
+"""
 
 import bpy
 
 register, unregister = bpy.utils.register_submodule_factory(
     __package__,
-    [
-        "properties",
-        "preferences",
-        "recolouring",
-        "analyze",
-        "add_analysis_preset",
-        "segment",
-        "select_part",
-        "pick_part",
-        "set_branch_level",
-        "merge_parts",
-        "split_part",
-        "move_border",
-        "paint_part",
-        "remove_correction",
-        "clear_corrections",
-        "cancel",
-        "copy_report",
-        "clear",
-        "plot_diagram",
-        "trace_complex",
-        "write_outputs",
-        "write_eigenfunctions",
-        "cut",
-        "separate",
-        "register_selected",
-        "flip_function",
-        "next_alternative",
-        "transfer",
-        "add_transfer_preset",
-        "skeleton_options",
-        "create_armature",
-        "create_skeleton_curves",
-    ],
+    ["outputs", "jobs", "parts", "corrections", "registration", "transfer", "armature", "topology", "settings"],
 )

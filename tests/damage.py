@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from compute.mesh import Floats, Ints
+from compute.surface.mesh import Floats, Ints
 from tests.shapes import icosphere, joined, rectangle, star, tetrahedron, torus
 
 Damage = Callable[[Floats, Ints, float, np.random.Generator], tuple[Floats, Ints]]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compute.mesh import TriangleMesh
+from compute.surface.mesh import TriangleMesh
 
 
 def subdivide(mesh: TriangleMesh) -> TriangleMesh:

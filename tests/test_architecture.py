@@ -15,8 +15,9 @@ MAY_IMPORT = {
     "operators": {"compute"},
     "cli": {"compute", "operators"},
     "ui": {
-        *("operators.state", "operators.palette", "operators.registered", "operators.faults"),
-        *("operators.border_lines", "operators.part_outline", "operators.function_hints", "operators.sentences"),
+        *("operators.mesh_state.state", "operators.mesh_state.palette", "operators.mesh_state.registration_record"),
+        *("operators.mesh_state.function_hints", "operators.messages", "operators.parts.border_lines"),
+        "operators.parts.part_outline",
     },
 }
 OUTSIDE = {
@@ -26,15 +27,24 @@ OUTSIDE = {
     "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils"},
 }
 
-# A part of the engine may import only parts that stand before it: the path of the data, read from left to right.
-PIPELINE = [
-    *("errors", "progress", "memory", "mesh", "shells", "surface", "orientation", "geodesics", "fem", "fields"),
-    *("field_choice", "shell_fields", "matching_basis", "msc", "segmentation", "analysis", "registration", "skeleton"),
-]
+# The rooms of a folder, each of which may import only those that stand before it.
+ORDER = {
+    # The path of the data, read from left to right.
+    "compute": [
+        *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
+        *("registration", "skeletons"),
+    ],
+    "compute.segmentation": ["hierarchy", "faces", "borders", "edits", "parts"],
+    "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],
+    "operators": [
+        *("messages", "mesh_data", "mesh_state", "outputs", "jobs", "parts", "corrections", "registration"),
+        *("transfer", "armature", "topology", "settings"),
+    ],
+}
 
 
 def violations(root: Path) -> set[str]:
-    """Return every import below ``root`` that breaks a rule, as "compute/mesh.py: ..operators"."""
+    """Return every import below ``root`` that breaks a rule, as "compute/surface/mesh.py: ..operators"."""
     files = [root / "__init__.py", *(path for folder in OUTSIDE for path in sorted((root / folder).rglob("*.py")))]
     return {
         f"{path.relative_to(root)}: {module}"
@@ -63,39 +73,61 @@ def is_allowed(importer: tuple[str, ...], module: str) -> bool:
     home = importer[0]
     if not module.startswith("/"):
         return module.split(".")[0] in OUTSIDE.get(home, set()) | set(sys.stdlib_module_names)
-    folder, *inner = module[1:].split(".")
-    if folder != home:
+    imported = module[1:].split(".")
+    if imported[0] != home:
         return any(f"{module[1:]}.".startswith(f"{goal}.") for goal in MAY_IMPORT[home])
-    return home != "compute" or not inner or position(importer[1]) >= position(inner[0])
+    return all(keeps_order(ORDER[folder], folder.split("."), importer, imported) for folder in ORDER)
 
 
-def position(part: str) -> int:
-    """Return the place of an engine part in the pipeline; the package's own __init__ comes last."""
-    return len(PIPELINE) if part == "__init__" else PIPELINE.index(part)
+def keeps_order(order: list[str], folder: list[str], importer: tuple[str, ...], imported: list[str]) -> bool:
+    """Whether an import inside a folder goes to the same room or to one before it."""
+    depth = len(folder)
+    if list(importer[:depth]) != folder or imported[:depth] != folder or len(imported) == depth:
+        return True
+    return place(order, importer[depth]) >= place(order, imported[depth])
+
+
+def place(order: list[str], room: str) -> int:
+    """Return the place of a room in an order; a folder's own __init__ comes last."""
+    return len(order) if room == "__init__" else order.index(room)
 
 
 def test_every_import_keeps_its_direction():
     assert violations(ROOT) == set()
 
 
-def test_every_engine_module_has_a_place_in_the_pipeline():
-    parts = {path.stem for path in (ROOT / "compute").glob("[!_]*") if path.suffix in ("", ".py")}
-    assert parts <= set(PIPELINE)
+@pytest.mark.parametrize("folder", ORDER)
+def test_every_room_has_a_place_in_the_order(folder):
+    rooms = {
+        path.stem for path in (ROOT / folder.replace(".", "/")).glob("[!_]*") if path.suffix == ".py" or path.is_dir()
+    }
+    assert rooms == set(ORDER[folder])
+
+
+def test_every_room_says_what_lives_there():
+    rooms = [path for folder in OUTSIDE for path in (ROOT / folder).rglob("*/") if any(path.glob("*.py"))]
+    assert len(rooms) > 20
+    for room in rooms:
+        assert (ast.get_docstring(ast.parse((room / "__init__.py").read_text())) or "").endswith("."), room
 
 
 @pytest.mark.parametrize(
     ("file", "line"),
     [
-        ("compute/mesh.py", "import bpy"),
-        ("compute/mesh.py", "from .fem.space import numbering"),
+        ("compute/surface/mesh.py", "import bpy"),
+        ("compute/surface/mesh.py", "from ..fem.space import numbering"),
         ("compute/fem/space.py", "from ..analysis import analyze"),
-        ("compute/fem/space.py", "from ...operators import exchange"),
-        ("operators/analyze.py", "from ..ui import panel"),
-        ("operators/analyze.py", "from .. import cli"),
-        ("operators/analyze.py", "import scipy.sparse"),
+        ("compute/fem/space.py", "from ...operators import mesh_data"),
+        ("operators/parts/analyze.py", "from ...ui import panel"),
+        ("operators/parts/analyze.py", "from ... import cli"),
+        ("operators/parts/analyze.py", "import scipy.sparse"),
+        ("operators/parts/analyze.py", "from ..corrections import cut"),
+        ("operators/mesh_state/state.py", "from ..outputs.part_writer import segment_mesh"),
+        ("compute/segmentation/faces/branches.py", "from ..parts.part_labels import Parts"),
+        ("compute/registration/eigenfunctions/matching.py", "from ..dense.correspondence import correspond"),
         ("cli/__init__.py", "from ..ui.panel import draw"),
-        ("ui/panel.py", "from ..compute.mesh import TriangleMesh"),
-        ("ui/panel.py", "from ..operators import exchange"),
+        ("ui/panel.py", "from ..compute.surface.mesh import TriangleMesh"),
+        ("ui/panel.py", "from ..operators.mesh_data import mesh_arrays"),
         ("__init__.py", "from . import compute"),
     ],
 )
@@ -110,13 +142,15 @@ def test_a_broken_rule_is_noticed(tmp_path, file, line):
     ("file", "line"),
     [
         ("compute/analysis.py", "from .fem.space import numbering"),
-        ("compute/fem/space.py", "from ..mesh import TriangleMesh"),
+        ("compute/fem/space.py", "from ..surface.mesh import TriangleMesh"),
         ("compute/fem/space.py", "from .lagrange import basis"),
         ("compute/fem/space.py", "import numpy.linalg"),
-        ("compute/__init__.py", "from .skeleton import skeleton"),
-        ("operators/analyze.py", "from .. import compute"),
-        ("ui/panel.py", "from ..operators import state"),
-        ("ui/panel.py", "from ..operators.state import read"),
+        ("compute/__init__.py", "from .skeletons.embedding import skeleton"),
+        ("compute/registration/parts/population.py", "from ..dense.matched_points import source_points"),
+        ("operators/parts/analyze.py", "from ..mesh_state.state import load"),
+        ("operators/parts/analyze.py", "from ... import compute"),
+        ("ui/panel.py", "from ..operators.mesh_state import state"),
+        ("ui/panel.py", "from ..operators.mesh_state.state import read"),
         ("__init__.py", "from . import cli, operators, ui"),
     ],
 )

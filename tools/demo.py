@@ -20,9 +20,9 @@ from tools.extension import load_extension
 
 load_extension()
 from eigenparts.cli import formats
-from eigenparts.cli.quiet import blender_is_quiet as quiet
-from eigenparts.operators import state
-from eigenparts.operators.refusals import Refusal
+from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.operators.mesh_state import state
+from eigenparts.operators.messages.user_errors import Refusal
 from tools.render import render, side_by_side
 
 POSES = ("rest", "walk")

@@ -7,8 +7,8 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix, Vector
 
-from ..operators.border_lines import border_lines
-from ..operators.palette import BORDER_COLOUR, COMPLEX_COLOURS, COMPLEX_ROLE
+from ..operators.mesh_state.palette import BORDER_COLOUR, COMPLEX_COLOURS, COMPLEX_ROLE
+from ..operators.parts.border_lines import border_lines
 
 # Pixels, at a scale of the interface of 1.
 LINE_WIDTH, BORDER_WIDTH, DOT_RADIUS, DOT_CORNERS = 2.0, 2.5, 6.0, 20

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators.sentences import in_language
+from ..operators.messages.sentences import in_language
 from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
 
 

@@ -3,7 +3,7 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ..operators import function_hints
+from ..operators.mesh_state import function_hints
 from .tab import EigenpartsPanel
 
 

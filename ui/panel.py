@@ -3,7 +3,8 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ..operators import faults, registered, state
+from ..operators.mesh_state import registration_record, state
+from ..operators.messages import unexpected_errors
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
 from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_hint, draw_sentence, main_row
 
@@ -28,7 +29,7 @@ class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
         if row is not None:
             row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
             row.operator("eigenparts.clear", text="", icon="TRASH")
-        fault = faults.last()
+        fault = unexpected_errors.last()
         if fault is not None:
             draw_sentence(layout, fault.sentence, context.region.width)
             layout.operator("eigenparts.copy_report", icon="COPYDOWN")
@@ -139,7 +140,7 @@ def _told(mesh: bpy.types.Mesh | None) -> str:
     """Return where the parts come from, or why there are none."""
     if mesh is None:
         return translated(NO_MESH)
-    match, summary = registered.read(mesh), _summary(mesh)
+    match, summary = registration_record.read(mesh), _summary(mesh)
     if match is not None:
         return translated("Parts of {name}").format(name=match.reference)
     if summary is None:

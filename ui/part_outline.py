@@ -4,7 +4,7 @@ import bpy
 import gpu
 from gpu_extras.batch import batch_for_shader
 
-from ..operators.part_outline import outline
+from ..operators.parts.part_outline import outline
 
 # Pixels, at a scale of the interface of 1, and sRGB; what lies behind the surface is fainter.
 WIDTH, COLOUR = 4.0, (1.0, 1.0, 1.0)

@@ -3,8 +3,8 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ..operators import state
-from ..operators.sentences import in_language
+from ..operators.mesh_state import state
+from ..operators.messages.sentences import in_language
 
 # What is said where there is nothing to show yet.
 NO_MESH = "Select a mesh object first."

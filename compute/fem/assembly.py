@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from ..mesh import Floats, Ints, TriangleMesh
+from ..surface.mesh import Floats, Ints, TriangleMesh
 from .lagrange import ReferenceElement
 from .space import FunctionSpace
 

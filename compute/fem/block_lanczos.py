@@ -12,8 +12,8 @@ import scipy.linalg
 from scipy.sparse import csr_array
 
 from ..errors import SpectrumError
-from ..mesh import Floats
 from ..progress import Progress
+from ..surface.mesh import Floats
 
 # The first look at the true residuals is worth taking when the recurrence promises this part of the tolerance.
 PROMISED = 0.1

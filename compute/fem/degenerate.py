@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse import csr_array
 
-from ..mesh import Floats
+from ..surface.mesh import Floats
 
 # Eigenvalues closer than this, relatively, count as one: the solver cannot tell their functions apart.
 DEGENERATE = 1e-8

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ..errors import SpectrumError
-from ..mesh import Bools, Floats, Ints, TriangleMesh
 from ..progress import Progress, silent
-from ..surface import Surface, clean_surface
+from ..surface.cleaning import Surface, clean_surface
+from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
 from .assembly import mass_matrix
 from .degenerate import fixed_basis
 from .eigensolver import eigen_problem, lowest_eigenpairs

@@ -8,11 +8,11 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import SuperLU
 
 from ..errors import SpectrumError
-from ..mesh import Bools, Floats, Ints
 from ..progress import Progress, section
+from ..surface.mesh import Bools, Floats, Ints
 from .assembly import Metric, assemble, element_mass, element_stiffness, metric
 from .block_lanczos import Pencil, smallest_eigenpairs
-from .ordering import bisect_triangles, elimination_order
+from .nested_dissection import bisect_triangles, elimination_order
 from .shift_invert import SHIFT, arpack_eigenpairs, dense_eigenpairs, factored_as_ordered, factored_by_columns
 from .space import FunctionSpace, function_space
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import SpectrumError
-from ..mesh import Floats, Ints
+from ..surface.mesh import Floats, Ints
 
 ORDERS = (1, 2, 3)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import MeshError
 from ..memory import available_memory
-from ..mesh import TriangleMesh
+from ..surface.mesh import TriangleMesh
 
 # Peak memory of the solver for 30 functions, measured between 10,000 and 160,000 vertices (docs/spectrum.md).
 BYTES_PER_UNKNOWN = 3500

@@ -11,8 +11,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import ArpackError, LinearOperator, SuperLU, eigsh, splu
 
 from ..errors import SpectrumError
-from ..mesh import Floats
 from ..progress import Progress
+from ..surface.mesh import Floats
 
 # Shift of the factored operator, in units of 1 / area: below every eigenvalue, so that the operator is definite.
 SHIFT = -4.0

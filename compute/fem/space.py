@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..mesh import Bools, Floats, Ints, TriangleMesh
+from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
 from .lagrange import ReferenceElement, reference_element
 
 

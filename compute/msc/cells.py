@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..mesh import Bools, Ints
+from ..surface.mesh import Bools, Ints
 from .links import Links
 
 

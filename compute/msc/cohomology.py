@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
-from ..mesh import Bools, Edges, Ints
+from ..surface.mesh import Bools, Edges, Ints
 from .links import Links
 
 

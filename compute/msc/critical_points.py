@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints
 from .links import Links
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..mesh import Floats, Ints
+from ..surface.mesh import Floats, Ints
 from .merge_tree import MergeTree
 from .persistence import EssentialClasses
 

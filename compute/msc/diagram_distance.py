@@ -6,7 +6,7 @@ from scipy.sparse.csgraph import maximum_bipartite_matching
 from scipy.spatial import cKDTree
 
 from ..errors import FieldError
-from ..mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints
 from .diagram import PersistenceDiagram
 
 # The search for the bottleneck is narrowed to this fraction of its value before distances are listed.

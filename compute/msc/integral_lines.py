@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints
 from .links import Links
 
 # A line that meets an edge this close to one of its ends, as a fraction of the edge, goes through the vertex.

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
-from ..mesh import Floats, Ints
+from ..surface.mesh import Floats, Ints
 from .links import Links
 
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..mesh import Bools, Edges, Ints, edges_of, sorted_sides
+from ..surface.mesh import Bools, Edges, Ints, edges_of, sorted_sides
 
 # Vertices in more triangles than this are not walked around but count as not plain, which is slower and as exact.
 LONGEST_WALK = 64

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Ints
+from ..surface.mesh import Ints
 from .critical_points import Sectors, merging_sectors, perhaps_critical, ranked_corners, vertices_by_rank
 from .links import Links
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..mesh import Floats, Ints
+from ..surface.mesh import Floats, Ints
 from .cancellation import extended_lines
 from .cells import Cells, cells_of
 from .cohomology import cocycles_of

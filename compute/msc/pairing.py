@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints
 from .merge_tree import MergeTree, ends_of_paths
 from .persistence import EssentialClasses
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mesh import Ints
+from ..surface.mesh import Ints
 from .cohomology import Cocycles, reduce_vector
 from .merge_tree import MergeTree, ends_of_paths
 

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import LevelError
-from ..mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints
 from .critical_points import ranked_corners
 from .links import Links
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints
 from .critical_points import sector_nodes
 from .integral_lines import Ascent, Exits, ascent_of, exits_of, steepest_exits, trace
 from .links import Links

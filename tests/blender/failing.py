@@ -1,5 +1,7 @@
 """Functions that fail when they are called for the n-th time, and all that may not change then."""
 
+import re
+import sys
 from contextlib import suppress
 
 import bpy
@@ -82,12 +84,18 @@ class Failing:
         return self.function(*arguments, **options)
 
 
+def module_of_operators(name):
+    """Return the module of this name in the rooms of the operators."""
+    [found] = [
+        module for path, module in sys.modules.items() if re.fullmatch(rf"eigenparts\.operators\.\w+\.{name}", path)
+    ]
+    return found
+
+
 def fail_at(monkeypatch, name, n, error=MemoryError):
     """Let the n-th call of a function of the operators fail, and return it."""
-    import eigenparts.operators as operators
-
     module, function = name.split(".")
-    owner = getattr(operators, module)
+    owner = module_of_operators(module)
     failing = Failing(getattr(owner, function), n, error)
     monkeypatch.setattr(owner, function, failing)
     return failing

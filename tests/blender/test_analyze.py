@@ -115,7 +115,7 @@ def test_modifiers_that_change_faces_are_refused(star_object):
 
 
 def test_an_analysis_by_eigenfunction_tells_which_one_suits(star_object, extension):
-    hints = extension.operators.function_hints
+    hints = extension.operators.mesh_state.function_hints
     bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=1)
     found = hints.read(star_object.data)
     assert {number for number, _, _ in found} == set(range(1, 9))

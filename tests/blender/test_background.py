@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture
 def job(extension):
-    from eigenparts.operators import job
+    from eigenparts.operators.jobs import job
 
     return job
 
@@ -61,7 +61,7 @@ def test_a_cancelled_job_stops_at_its_next_report(job, extension):
     go_on.set()
     wait_for(lambda: running.is_done)
     assert reached == []
-    with pytest.raises(extension.operators.engine.Cancelled):
+    with pytest.raises(extension.compute.Cancelled):
         running.result()
 
 
@@ -79,7 +79,7 @@ def test_the_next_job_waits_for_a_cancelled_one(job):
 
 
 def test_analyze_is_refused_while_a_job_runs(extension, star_object):
-    from eigenparts.operators import background
+    from eigenparts.operators.jobs import background
 
     go_on = threading.Event()
     background._start(lambda progress: go_on.wait(10))

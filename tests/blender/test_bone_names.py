@@ -9,7 +9,7 @@ PART = np.array([0, 0, 1, 1, 0, 2, 2, 0, 3])
 
 
 def named(extension, names=None, pairing=None, taken=()):
-    from eigenparts.operators.bone_names import name_bones
+    from eigenparts.operators.armature.bone_names import name_bones
 
     return name_bones(PARENT, PART, names or NAMES, pairing or {}, set(taken))
 

@@ -63,7 +63,7 @@ def test_switches_are_off_where_nothing_is_traced(overlay, star_object):
 
 
 def lines_of(obj):
-    from eigenparts.operators.border_lines import border_lines
+    from eigenparts.operators.parts.border_lines import border_lines
 
     return border_lines(obj, bpy.context.evaluated_depsgraph_get())
 

@@ -6,7 +6,7 @@ import pytest
 
 @pytest.fixture
 def report(extension):
-    from eigenparts.operators.copy_report import report
+    from eigenparts.operators.settings.copy_report import report
 
     return lambda: report(bpy.context)
 
@@ -26,17 +26,19 @@ def test_the_report_names_neither_files_nor_objects(report, analyzed, tmp_path):
 
 
 def test_an_error_is_told_by_its_place_in_the_extension_only(report, star_object):
-    from eigenparts.operators import engine, exchange, faults
+    from eigenparts import compute as engine
+    from eigenparts.operators.mesh_data import mesh_arrays
+    from eigenparts.operators.messages import unexpected_errors
 
     try:
-        engine.TriangleMesh(exchange.read_mesh(star_object.data).vertices, "/home/somebody/secret.txt")
+        engine.TriangleMesh(mesh_arrays.read_mesh(star_object.data).vertices, "/home/somebody/secret.txt")
     except Exception as error:
-        faults.remember(error)
+        unexpected_errors.remember(error)
     told = report()
-    assert "compute/mesh.py:" in told
+    assert "compute/surface/mesh.py:" in told
     assert "somebody" not in told
-    faults.forget()
-    assert "compute/mesh.py:" not in report()
+    unexpected_errors.forget()
+    assert "compute/surface/mesh.py:" not in report()
 
 
 def test_no_mesh_is_a_report_too(report):

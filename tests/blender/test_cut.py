@@ -173,8 +173,8 @@ def test_the_area_of_each_part_is_that_of_its_level_set(star):
 
 def exact_areas(analysis):
     """Return the area of each part of the default level, by cutting every triangle of the net."""
-    from compute.segmentation.arc_areas import arc_areas
-    from compute.segmentation.parts import cut_arcs
+    from compute.segmentation.faces.arc_areas import arc_areas
+    from compute.segmentation.parts.part_labels import cut_arcs
 
     areas = {}
     cuts = cut_arcs(analysis.hierarchy, analysis.branches(), analysis.hierarchy.default_level)

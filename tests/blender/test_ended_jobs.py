@@ -13,7 +13,8 @@ from tests.blender.test_background import wait_for
 
 def test_a_cancel_at_any_step_of_progress_changes_nothing(analyzed, monkeypatch):
     """Through the operator: each report of progress in turn is where the user cancels."""
-    from eigenparts.operators import background, engine
+    from eigenparts import compute as engine
+    from eigenparts.operators.jobs import background
 
     before, n_steps = all_of(analyzed.data), 0
     while True:
@@ -30,7 +31,8 @@ def test_a_cancel_at_any_step_of_progress_changes_nothing(analyzed, monkeypatch)
 
 @pytest.mark.parametrize("operator", ["create_armature", "register_selected", "transfer"])
 def test_a_cancelled_longer_job_changes_nothing(analyzed, star, monkeypatch, operator):
-    from eigenparts.operators import background, engine
+    from eigenparts import compute as engine
+    from eigenparts.operators.jobs import background
 
     other = add_object(1.1 * star.vertices, star.triangles, "other")
     other.vertex_groups.new(name="group").add([0, 1], 1.0, "REPLACE")
@@ -60,7 +62,7 @@ def test_out_of_memory_in_the_engine_changes_nothing(analyzed, monkeypatch):
 
 def test_a_job_ends_with_the_file_it_was_started_in(extension, star_object):
     """Loading a file makes Blender call ``cancel``; the thread stops at its next report."""
-    from eigenparts.operators import background
+    from eigenparts.operators.jobs import background
 
     go_on, started, reached = threading.Event(), threading.Event(), []
 
@@ -80,17 +82,18 @@ def test_a_job_ends_with_the_file_it_was_started_in(extension, star_object):
 
 
 def test_a_result_for_a_file_that_is_gone_is_dropped(star_object, extension):
-    from eigenparts.operators import exchange, refusals
-    from eigenparts.operators.analyze import Ticket, find_mesh
+    from eigenparts.operators.mesh_data import mesh_arrays
+    from eigenparts.operators.messages import user_errors
+    from eigenparts.operators.parts.analyze import Ticket, find_mesh
 
-    ticket = Ticket(star_object.data.session_uid, exchange.fingerprint(star_object.data))
+    ticket = Ticket(star_object.data.session_uid, mesh_arrays.fingerprint(star_object.data))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    with pytest.raises(refusals.Refusal, match="deleted"):
+    with pytest.raises(user_errors.Refusal, match="deleted"):
         find_mesh(ticket)
 
 
 def test_the_thread_of_a_job_does_not_keep_blender_open(extension):
-    from eigenparts.operators import job
+    from eigenparts.operators.jobs import job
 
     go_on = threading.Event()
     running = job.Job(lambda progress: go_on.wait(10))
@@ -100,7 +103,7 @@ def test_the_thread_of_a_job_does_not_keep_blender_open(extension):
 
 
 def test_disabling_the_extension_stops_the_job(extension, star_object):
-    from eigenparts.operators import background
+    from eigenparts.operators.jobs import background
 
     go_on = threading.Event()
     job = background._start(lambda progress: go_on.wait(10))

@@ -8,12 +8,21 @@ import pytest
 
 from tests.blender.conftest import add_object, values_of
 from tests.blender.drawn import draw_panels
-from tests.blender.failing import Failing, all_of, blocks, fail_at, fails_at_every_call, groups_of, object_as_it_is
+from tests.blender.failing import (
+    Failing,
+    all_of,
+    blocks,
+    fail_at,
+    fails_at_every_call,
+    groups_of,
+    module_of_operators,
+    object_as_it_is,
+)
 
 WRITERS = (
     *("state.write_attribute", "state.packed", "state.packed_array", "state.remove_own_attributes"),
-    *("results.write_attribute", "vertex_map.write_attribute", "corner_colours.write_attribute"),
-    *("part_table.number_parts", "results._list_parts", "function_hints.store"),
+    *("part_writer.write_attribute", "vertex_map.write_attribute", "corner_colours.write_attribute"),
+    *("part_table.number_parts", "part_writer._list_parts", "function_hints.store"),
 )
 
 
@@ -39,7 +48,7 @@ def test_out_of_memory_while_an_analysis_is_written_changes_nothing(star_object,
     assert all_of(star_object.data) != before
 
 
-@pytest.mark.parametrize("writer", ["state.write_attribute", "results.write_attribute", "registering.match_of"])
+@pytest.mark.parametrize("writer", ["state.write_attribute", "part_writer.write_attribute", "registering.match_of"])
 def test_a_registration_is_written_to_all_meshes_or_to_none(star, monkeypatch, writer):
     objects = [add_object((1 + k) * star.vertices, star.triangles, f"star {k}") for k in range(3)]
     before = [all_of(obj.data) for obj in objects]
@@ -51,12 +60,10 @@ def test_a_registration_is_written_to_all_meshes_or_to_none(star, monkeypatch, w
         assert [all_of(obj.data) for obj in objects] == before
 
 
-@pytest.mark.parametrize("step", ["state.store_branches", "results.segment_mesh", "exchange.read_mesh"])
+@pytest.mark.parametrize("step", ["state.store_branches", "part_writer.segment_mesh", "mesh_arrays.read_mesh"])
 def test_a_cut_that_fails_leaves_the_faces(analyzed, monkeypatch, step):
-    import eigenparts.operators as operators
-
     before = all_of(analyzed.data)
-    owner = operators.cut if step == "exchange.read_mesh" else getattr(operators, step.split(".")[0])
+    owner = module_of_operators("cut" if step == "mesh_arrays.read_mesh" else step.split(".")[0])
     name = step.split(".")[1]
     monkeypatch.setattr(owner, name, Failing(getattr(owner, name), 1))
     with pytest.raises(RuntimeError):
@@ -119,7 +126,7 @@ CHANGES = {
 }
 # Everything that is written with, down to what hands groups and materials over to Blender.
 LEVEL_WRITERS = (
-    *("results.write_attribute", "results._list_parts", "part_table.number_parts", "state.packed"),
+    *("part_writer.write_attribute", "part_writer._list_parts", "part_table.number_parts", "state.packed"),
     *("corrections.write_attribute", "corrections.packed", "corrections.remove_own_attributes"),
     *("vertex_map.write_attribute", "corner_colours.write_attribute", "face_sets.write_attribute"),
     *("field_values.write_attribute", "vertex_groups._groups", "vertex_groups._fill_softly", "vertex_groups._drop"),
@@ -145,7 +152,7 @@ def test_a_change_that_fails_anywhere_leaves_everything_as_it_was(full, monkeypa
 
 def n_calls(monkeypatch, writer, mesh, change):
     """Return how often a change calls a writer if nothing fails; it is taken back."""
-    from eigenparts.operators.rollback import all_or_nothing
+    from eigenparts.operators.outputs.rollback import all_or_nothing
 
     with monkeypatch.context() as patch:
         counting = fail_at(patch, writer, 0)
@@ -195,14 +202,14 @@ def dressed(full, star):
 TRANSFER_WRITERS = (
     *("layer_writing.fill_group", "layer_writing.store_values", "layer_writing._write_key", "layer_writing._slot"),
     *("layer_writing._write_materials", "layer_writing._write_parts", "layer_writing._new_attribute"),
-    *("layer_writing._write_attribute", "exchange.write_attribute", "corner_colours.write_attribute"),
+    *("layer_writing._write_attribute", "mesh_arrays.write_attribute", "corner_colours.write_attribute"),
 )
 
 
 @pytest.fixture
 def found_once(extension, monkeypatch):
     """A transfer finds only once what it writes again and again."""
-    from eigenparts.operators import transfer
+    from eigenparts.operators.transfer import transfer
 
     monkeypatch.setattr(transfer, "_transfer", cache_of_one(transfer._transfer))
 

@@ -68,7 +68,7 @@ def test_the_difference_is_that_of_the_published_examples(first, second, differe
 @pytest.fixture(scope="module")
 def distances(extension):
     """The least difference of each two colours over all kinds of sight, the body first."""
-    linear = np.array(extension.operators.palette.standard_colours())
+    linear = np.array(extension.operators.mesh_state.palette.standard_colours())
     seen = [lab_of(linear @ np.transpose(matrix)) for matrix in SIGHT.values()]
     return np.min([ciede2000(lab[:, None], lab[None]) for lab in seen], axis=0)
 

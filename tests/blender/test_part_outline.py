@@ -11,7 +11,7 @@ from tests.blender.conftest import values_of
 
 @pytest.fixture
 def outline(extension):
-    return importlib.import_module(f"{extension.__name__}.operators.part_outline").outline
+    return importlib.import_module(f"{extension.__name__}.operators.parts.part_outline").outline
 
 
 def click(obj, part):

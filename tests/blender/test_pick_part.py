@@ -85,7 +85,7 @@ def test_parts_are_picked_in_object_mode_only(analyzed):
 def test_a_view_is_found_where_nothing_lies_over_it(extension):
     from types import SimpleNamespace as Thing
 
-    from eigenparts.operators.pick_part import view_under
+    from eigenparts.operators.parts.pick import view_under
 
     window = Thing(type="WINDOW", x=100, y=50, width=400, height=300)
     sidebar = Thing(type="UI", x=400, y=50, width=100, height=300)
@@ -97,7 +97,7 @@ def test_a_view_is_found_where_nothing_lies_over_it(extension):
 
 
 def test_a_ray_passes_through_what_the_view_does_not_show(analyzed, extension):
-    from eigenparts.operators.pick_part import pick
+    from eigenparts.operators.parts.pick import pick
 
     window = bpy.context.window_manager.windows[0]
     view = next(area for area in window.screen.areas if area.type == "VIEW_3D").spaces.active
@@ -106,5 +106,5 @@ def test_a_ray_passes_through_what_the_view_does_not_show(analyzed, extension):
     # No collection was chosen to be seen in this view.
     view.use_local_collections = True
     assert not analyzed.visible_in_viewport_get(view)
-    with pytest.raises(extension.operators.refusals.Refusal, match="no surface here"):
+    with pytest.raises(extension.operators.messages.user_errors.Refusal, match="no surface here"):
         pick(bpy.context, *ray, view)

@@ -16,7 +16,7 @@ OF_TRANSFER = sorted((PRESETS / "transfer").glob("*.py"))
 
 @pytest.fixture
 def palette(extension):
-    from eigenparts.operators import palette
+    from eigenparts.operators.mesh_state import palette
 
     yield palette
     palette.use_colours(palette.standard_colours())
@@ -89,7 +89,7 @@ def test_only_meshes_of_ours_that_can_be_written_to_are_recoloured(preferences, 
 
 
 def test_threads_reach_the_library_of_scipy(extension):
-    from eigenparts.operators import threads
+    from eigenparts.operators.jobs import threads
 
     asked = [
         getattr(library, name)
@@ -113,7 +113,7 @@ def test_threads_reach_the_library_of_scipy(extension):
 def test_a_preset_sets_every_option_but_the_name_of_an_attribute(extension, path):
     settings = bpy.context.scene.eigenparts
     given = {line.split(" = ")[0].removeprefix("settings.") for line in path.read_text().splitlines()[3:]}
-    assert given == set(extension.operators.properties.AnalysisOptions.__annotations__) - {"attribute"}
+    assert given == set(extension.operators.parts.analysis_options.AnalysisOptions.__annotations__) - {"attribute"}
     settings.order = "2"
     exec(compile(path.read_text(), path.name, "exec"), {})
     assert settings.order != "2"
@@ -121,7 +121,7 @@ def test_a_preset_sets_every_option_but_the_name_of_an_attribute(extension, path
 
 @pytest.mark.parametrize("path", OF_TRANSFER, ids=lambda path: path.stem)
 def test_a_preset_sets_every_option_of_transferring(extension, path):
-    options = set(extension.operators.transfer.TransferOptions.__annotations__)
+    options = set(extension.operators.transfer.transfer.TransferOptions.__annotations__)
     settings = bpy.context.scene.eigenparts_transfer
     given = {line.split(" = ")[0].removeprefix("settings.") for line in path.read_text().splitlines()[3:]}
     assert given == options
@@ -158,25 +158,25 @@ class Listener:
 
 
 def test_an_error_that_nobody_foresaw_becomes_a_sentence(extension):
-    from eigenparts.operators import faults
+    from eigenparts.operators.messages import unexpected_errors
 
     listener = Listener()
-    with faults.errors_told(listener):
+    with unexpected_errors.errors_told(listener):
         raise MemoryError
-    assert listener.heard == [({"ERROR"}, faults.OUT_OF_MEMORY)]
-    with faults.errors_told(listener):
+    assert listener.heard == [({"ERROR"}, unexpected_errors.OUT_OF_MEMORY)]
+    with unexpected_errors.errors_told(listener):
         raise ZeroDivisionError("in /home/somebody")
-    assert "ZeroDivisionError" in faults.last().sentence
-    assert "somebody" not in faults.last().report
-    faults.forget()
+    assert "ZeroDivisionError" in unexpected_errors.last().sentence
+    assert "somebody" not in unexpected_errors.last().report
+    unexpected_errors.forget()
 
 
 def test_a_refusal_is_no_fault(extension):
-    from eigenparts.operators import faults
-    from eigenparts.operators.refusals import Refusal
+    from eigenparts.operators.messages import unexpected_errors
+    from eigenparts.operators.messages.user_errors import Refusal
 
     listener = Listener()
-    with faults.errors_told(listener):
+    with unexpected_errors.errors_told(listener):
         raise Refusal("Select a mesh object first.")
     assert listener.heard == [({"ERROR"}, "Select a mesh object first.")]
-    assert faults.last() is None
+    assert unexpected_errors.last() is None

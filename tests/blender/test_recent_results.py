@@ -25,7 +25,7 @@ def pair():
 @pytest.fixture
 def calls(monkeypatch):
     """How often the engine is asked for what takes time."""
-    from eigenparts.operators import engine
+    from eigenparts import compute as engine
 
     counts = Counter()
 

@@ -133,14 +133,14 @@ def test_the_panel_of_segment_begins_with_what_the_mesh_shows(analyzed):
 
 def test_the_threshold_begins_where_the_default_level_is(extension):
     entry = bpy.ops.eigenparts.segment.get_rna_type().properties["threshold"]
-    assert entry.default == pytest.approx(extension.operators.engine.DEFAULT_THRESHOLD)
+    assert entry.default == pytest.approx(extension.compute.DEFAULT_THRESHOLD)
 
 
 def test_bones_after_an_analysis_need_no_other_one(analyzed, extension, monkeypatch):
     def refuse(*_, **__):
         raise AssertionError("analyzed again")
 
-    monkeypatch.setattr(extension.operators.engine, "analyze", refuse, raising=False)
+    monkeypatch.setattr(extension.compute, "analyze", refuse, raising=False)
     assert bpy.ops.eigenparts.create_skeleton_curves() == {"FINISHED"}
     analyzed.data.vertices[0].co.x += 0.01
     with pytest.raises((AssertionError, RuntimeError)):

@@ -101,7 +101,7 @@ def test_a_fixed_boundary_needs_a_boundary(star_object):
 def test_missing_scipy_is_explained(star_object, monkeypatch, extension):
     for name in [name for name in sys.modules if name.split(".")[0] == "scipy"]:
         monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setattr(extension.operators.engine, "find_spec", lambda name: None)
+    monkeypatch.setattr(extension.operators.messages.user_errors, "find_spec", lambda name: None)
     with pytest.raises(RuntimeError, match="needs scipy"):
         bpy.ops.eigenparts.analyze()
     assert extension.cli.main(["segment", "nothing.obj"]) == 1

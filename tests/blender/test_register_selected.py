@@ -82,9 +82,9 @@ def agreement(reference, target):
 
 
 def registration_of(obj):
-    from eigenparts.operators import registered
+    from eigenparts.operators.mesh_state import registration_record
 
-    return registered.read(obj.data)
+    return registration_record.read(obj.data)
 
 
 def test_every_part_has_the_number_of_the_reference(registered):
@@ -274,7 +274,7 @@ def test_one_undo_takes_everything_back(balls):
 
 def test_every_sign_that_is_shown_can_be_flipped_without_a_new_analysis(registered, monkeypatch):
     """The hand has no symmetry, so no flipped matching fits; it is shown all the same, as not sure."""
-    from eigenparts.operators import engine
+    from eigenparts import compute as engine
 
     _, fist = registered
     bpy.ops.eigenparts.flip_function(object_name=fist.name, number=1)
@@ -289,7 +289,7 @@ def test_every_sign_that_is_shown_can_be_flipped_without_a_new_analysis(register
 
 
 def test_alternatives_need_no_new_analysis(registered, monkeypatch):
-    from eigenparts.operators import engine
+    from eigenparts import compute as engine
 
     _, fist = registered
     bpy.ops.eigenparts.next_alternative(object_name=fist.name)
@@ -319,8 +319,8 @@ def test_a_reference_that_is_gone_is_told(registered):
 
 def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
     """Cancelled as the window does it: at a report of progress while the pair is matched."""
-    from eigenparts.operators import engine
-    from eigenparts.operators.registering import Registers, Wish
+    from eigenparts import compute as engine
+    from eigenparts.operators.registration.registering import Registers, Wish
 
     def cancel(fraction, text):
         if "order and signs" in text:

@@ -16,7 +16,7 @@ PLACES = {"progress": 1, "_report": 1, "in_language": 0}
 
 def sentences_of_source():
     """Return all sentences in the code of operators and engine, with {} where a value is filled in."""
-    paths = [*(ROOT / "operators").glob("*.py"), *(ROOT / "compute").rglob("*.py")]
+    paths = [*(ROOT / "operators").rglob("*.py"), *(ROOT / "compute").rglob("*.py")]
     found = set().union(*(texts_of(ast.parse(path.read_text())) for path in paths))
     begun = {text for text in found if text[:1] in ("{", '"') or text[:1].isupper()}
     return {text for text in begun if re.search("[a-z]{3}", text)}
@@ -65,7 +65,7 @@ def german(extension):
 @pytest.fixture
 def told(extension, german):
     """What is told in German; Blender as a module knows no language but English."""
-    from eigenparts.operators.sentences import in_language
+    from eigenparts.operators.messages.sentences import in_language
 
     return lambda text: in_language(text, lambda known: german.get(known, known))
 
@@ -114,7 +114,7 @@ def test_what_is_in_no_table_is_told_as_it_is(told, text):
 
 
 def test_english_is_told_as_it_is(extension):
-    from eigenparts.operators.sentences import in_language
+    from eigenparts.operators.messages.sentences import in_language
 
     for sentence in sentences_of_source():
         text = sentence.format(*range(sentence.count("{}")))
@@ -122,7 +122,7 @@ def test_english_is_told_as_it_is(extension):
 
 
 def test_refusals_are_told_in_the_language(extension, analyzed, german, monkeypatch):
-    from eigenparts.operators import sentences
+    from eigenparts.operators.messages import sentences
 
     in_language = sentences.in_language
     monkeypatch.setattr(

@@ -29,7 +29,7 @@ def run(capfd):
 
     def call(*arguments):
         extension = load_extension()
-        importlib.import_module("eigenparts.cli.quiet").flush_streams()
+        importlib.import_module("eigenparts.cli.suppress_output").flush_streams()
         capfd.readouterr()
         code = extension.cli.main([str(argument) for argument in arguments])
         out, err = capfd.readouterr()

@@ -87,9 +87,9 @@ def parts_of(report):
 def stand_in(run, monkeypatch):
     """Processes that do nothing, and die of some files."""
     run("--help")
-    from eigenparts.cli import processes
+    from eigenparts.cli import process_pool
 
-    monkeypatch.setattr(processes, "own_command", lambda: [sys.executable, "-c", STAND_IN])
+    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", STAND_IN])
 
 
 def test_a_file_that_kills_its_process_takes_no_other_with_it(run, stand_in, tmp_path):
@@ -126,9 +126,9 @@ def test_a_time_limit_needs_processes(run, star_off):
 
 def test_a_command_that_is_not_there_fails_every_file(run, folder, monkeypatch):
     run("--help")
-    from eigenparts.cli import processes
+    from eigenparts.cli import process_pool
 
-    monkeypatch.setattr(processes, "own_command", lambda: ["/there/is/no/blender"])
+    monkeypatch.setattr(process_pool, "own_command", lambda: ["/there/is/no/blender"])
     code, _, errors = run("batch", folder, "--jobs", 2)
     assert code == 1
     assert sum("no/blender" in line for line in errors) == 6
@@ -245,9 +245,9 @@ def address_of(address_file):
 
 def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tmp_path):
     run("--help")
-    from eigenparts.cli import processes
+    from eigenparts.cli import process_pool
 
-    monkeypatch.setattr(processes, "PATIENCE", 1)
+    monkeypatch.setattr(process_pool, "PATIENCE", 1)
     code, _, errors = run("segment", star_off, "--scheduler", "tcp://127.0.0.1:9", "--output", tmp_path)
     assert (code, errors) == (1, ["no dask scheduler answers at tcp://127.0.0.1:9."])
     assert os.listdir(tmp_path) == []

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from compute import FieldError, analyze, solve_eigenbasis
-from compute.fields import diffusion_field, eigenfunction_field, refined_net
+from compute.fields.scalar_field import diffusion_field, eigenfunction_field, refined_net
 from tests.shapes import icosphere, rectangle, star
 
 

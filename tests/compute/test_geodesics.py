@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compute import MeshError
-from compute.geodesics import harmonic_fill, smoothed, softened_labels, stiffness
+from compute.surface.heat_smoothing import harmonic_fill, smoothed, softened_labels, stiffness
 from tests.shapes import icosphere, joined, rectangle
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from compute.mesh import TriangleMesh
-from compute.orientation import outward_triangles, wrongly_wound
+from compute.surface.mesh import TriangleMesh
+from compute.surface.orientation import outward_triangles, wrongly_wound
 from tests.shapes import icosphere, rectangle, tetrahedron
 
 

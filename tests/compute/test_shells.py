@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compute import EngineError, MeshError, RegistrationError, TriangleMesh, analyze, match, skeleton, zero_level
-from compute.surface import bridged_surface, clean_surface
+from compute.surface.cleaning import bridged_surface, clean_surface
 from tests.shapes import icosphere, joined, rectangle, star, torus
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from compute import MeshError, TriangleMesh
-from compute.surface import clean_surface
+from compute.surface.cleaning import clean_surface
 from tests.shapes import icosphere, joined, rectangle, tetrahedron
 
 

@@ -4,22 +4,14 @@ import re
 
 import pytest
 
-from compute import fields, shell_fields, shells
 from compute.fem import assembly, eigensolver, order_choice
-from compute.registration import (
-    alignment,
-    correspondence,
-    deformation_graph,
-    dense,
-    hypotheses,
-    part_matching,
-    selection,
-    spectral_shape,
-    transfer,
-    zoomout,
-)
-from compute.segmentation import hierarchy, necks, nesting
-from compute.skeleton import bends, binding
+from compute.fields import scalar_field, shell_fields
+from compute.registration.dense import correspondence, deformation_graph, matched_points, nonrigid_alignment, transfer
+from compute.registration.eigenfunctions import hypotheses, map_scoring, spectral_shape, zoomout
+from compute.registration.parts import part_matching
+from compute.segmentation.hierarchy import levels, necks, nesting
+from compute.skeletons import bends, binding
+from compute.surface import bridging
 from tests.docs.pages import ROOT
 
 
@@ -35,22 +27,22 @@ def power(number):
 IN_WORDS = {4: "four", 1e-6: "a millionth"}
 METHOD = {
     "slivers": f"Slivers count with {IN_WORDS[assembly.AREA_FLOOR]} of the mean",
-    "functions of the field": f"up to {fields.DIFFUSION_FUNCTIONS} functions",
-    "default level": f"above {percent(hierarchy.DEFAULT_THRESHOLD)} of the range",
+    "functions of the field": f"up to {scalar_field.DIFFUSION_FUNCTIONS} functions",
+    "default level": f"above {percent(levels.DEFAULT_THRESHOLD)} of the range",
     "blunt": f"< {nesting.BLUNT:g} ",
     "neck of the body": f"< {nesting.NECK:g} ",
     "samples": f"at {spectral_shape.N_SAMPLES} points",
     "sizes of the map": f"from {zoomout.MATCHING_SIZES[0]} to {zoomout.MATCHING_SIZES[-1]}",
-    "tearing": f"({selection.USUAL_TEARING:g} + τ)",
-    "doubtful cost": f"(cost / {power(selection.DOUBTFUL_COST)})²",
-    "least cost": f"(cost + {power(selection.LEAST_COST)})",
+    "tearing": f"({map_scoring.USUAL_TEARING:g} + τ)",
+    "doubtful cost": f"(cost / {power(map_scoring.DOUBTFUL_COST)})²",
+    "least cost": f"(cost + {power(map_scoring.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
     "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",
     "nodes": f"up to {correspondence.N_NODES} nodes",
-    "rounds": f"each of {len(alignment.ROUNDS)} rounds",
-    "sliding": f"{alignment.SLIDING:g}² |x' - y|²",
-    "lost": f"{alignment.TURN:g}² |n' - n|²) / {alignment.LOST:g}²",
-    "step": f"lengthened by {alignment.RELAXATION:g}",
+    "rounds": f"each of {len(nonrigid_alignment.ROUNDS)} rounds",
+    "sliding": f"{nonrigid_alignment.SLIDING:g}² |x' - y|²",
+    "lost": f"{nonrigid_alignment.TURN:g}² |n' - n|²) / {nonrigid_alignment.LOST:g}²",
+    "step": f"lengthened by {nonrigid_alignment.RELAXATION:g}",
     "gap": f"(gap / {correspondence.DOUBTFUL_GAP:g})²",
     "stretch": f"ln {correspondence.DOUBTFUL_STRETCH:g})⁴",
     "joint": f"{bends.BEND:g} · number of joints",
@@ -58,10 +50,10 @@ METHOD = {
     "softness": f"limb: {binding.SOFTNESS:g} of its radius",
 }
 LOOSE_PARTS = {
-    "detail": f"less than {percent(shells.LEAST_SHARE)} of the area",
-    "near": f"than {percent(shells.TOUCHING)} of the root",
+    "detail": f"less than {percent(bridging.LEAST_SHARE)} of the area",
+    "near": f"than {percent(bridging.TOUCHING)} of the root",
     "crumb": f"fewer than {shell_fields.LEAST_TRIANGLES} triangles",
-    "lying": f"{percent(shells.LYING_SHARE)} of its vertices nearer than {percent(shells.LYING)} of the root",
+    "lying": f"{percent(bridging.LYING_SHARE)} of its vertices nearer than {percent(bridging.LYING)} of the root",
 }
 TROUBLESHOOTING = {"islands": f"more than {transfer.MOST_ISLANDS} islands"}
 DECISIONS = {
@@ -72,13 +64,13 @@ DECISIONS = {
     },
     "own_elimination_order": {"width": f"block Lanczos, {IN_WORDS[eigensolver.LEAST_WIDTH]} functions at a time"},
     "diffusion_field": {
-        "functions": f"up to {fields.DIFFUSION_FUNCTIONS} functions",
-        "time": f"diffusion, time {fields.DIFFUSION_TIME:g} (the present one)",
-        "flat": f"range of {fields.FLAT_DIFFUSION:g} it counts as flat",
+        "functions": f"up to {scalar_field.DIFFUSION_FUNCTIONS} functions",
+        "time": f"diffusion, time {scalar_field.DIFFUSION_TIME:g} (the present one)",
+        "flat": f"range of {scalar_field.FLAT_DIFFUSION:g} it counts as flat",
     },
     "default_level": {
-        "threshold": f"above {percent(hierarchy.DEFAULT_THRESHOLD)} of the range",
-        "noise": f"Below {percent(hierarchy.NOISE_THRESHOLD)} they are noise",
+        "threshold": f"above {percent(levels.DEFAULT_THRESHOLD)} of the range",
+        "noise": f"Below {percent(levels.NOISE_THRESHOLD)} they are noise",
         "blunt": f"is below {nesting.BLUNT:g}, its tip left out",
     },
     "nested_in_blender": {
@@ -89,8 +81,8 @@ DECISIONS = {
     "matching_by_moments": {"growth": f"grow to {hypotheses.Effort().levels[-1]} first"},
     "bent_surfaces": {
         "nodes": f"up to {correspondence.N_NODES} nodes",
-        "rounds": f"in {len(alignment.ROUNDS)} rounds",
-        "functions": f"refined to {dense.DENSE_SIZES[-1]} functions",
+        "rounds": f"in {len(nonrigid_alignment.ROUNDS)} rounds",
+        "functions": f"refined to {matched_points.DENSE_SIZES[-1]} functions",
     },
 }
 PAGES = {

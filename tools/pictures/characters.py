@@ -8,8 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from compute import TriangleMesh
-from eigenparts.cli.quiet import blender_is_quiet as quiet
-from eigenparts.operators import palette, state
+from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.operators.mesh_state import palette, state
 from examples import Bone, Character, Pose
 from examples.rig import bone_motions
 from examples.skinning import blend_skinning

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from compute import TriangleMesh, analyze
-from compute.registration.population import Reference, prepare_reference, register_one
+from compute.registration.parts.population import Reference, prepare_reference, register_one
 from examples import Character, humanoid, humanoid_poses
 from tools.pictures.characters import Coarse, add_mesh, between, coarsened, mesh_of, paint_faces, standing
 from tools.pictures.moving import Frame, write_gif

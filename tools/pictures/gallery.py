@@ -10,10 +10,10 @@ import numpy as np
 from PIL import Image
 
 from compute import Analysis, Matching, TriangleMesh, analyze
-from compute.mesh import Ints
-from compute.registration.carried_labels import Divisible, divisible
-from compute.registration.matching import matching_shape
-from compute.registration.population import label_matched, match_divisible, with_parts
+from compute.registration.eigenfunctions.matching import matching_shape
+from compute.registration.parts.carried_labels import Divisible, divisible
+from compute.registration.parts.population import label_matched, match_divisible, with_parts
+from compute.surface.mesh import Ints
 from examples import Character, hand, humanoid, octopus, quadruped
 from tools.pictures.characters import FINGERS_UP, add_mesh, paint_faces
 from tools.pictures.lettering import sheet

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from PIL import Image, ImageDraw
 
-from eigenparts.cli.quiet import blender_is_quiet as quiet
+from eigenparts.cli.suppress_output import blender_is_quiet as quiet
 from examples import Character, humanoid
 from tools.pictures.characters import add_mesh, analyze, level_of, segment, standing
 from tools.pictures.lettering import FINENESS, PALE_INK, PAPER, fine_lines, paper, write

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from PIL import Image
 
-from eigenparts.cli.quiet import blender_is_quiet as quiet
+from eigenparts.cli.suppress_output import blender_is_quiet as quiet
 from tools.render import View, light, paint_light, render
 
 

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from eigenparts.cli.quiet import blender_is_quiet as quiet
+from eigenparts.cli.suppress_output import blender_is_quiet as quiet
 from examples import humanoid
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, select, standing

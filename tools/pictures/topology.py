@@ -7,7 +7,7 @@ import numpy as np
 from mathutils import Color
 from PIL import Image
 
-from eigenparts.cli.quiet import blender_is_quiet as quiet
+from eigenparts.cli.suppress_output import blender_is_quiet as quiet
 from examples import handles, humanoid
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, level_of, segment, select, standing

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...operators import sentences
+from ...operators.messages import sentences
 from .german import GERMAN
 from .german_sentences import GERMAN_SENTENCES
 

@@ -9,8 +9,8 @@ from compute.errors import Cancelled, EngineError
 from compute.fem.assembly import mass_matrix, stiffness_matrix
 from compute.fem.eigenbasis import solve_eigenbasis, solve_on_surface
 from compute.fem.space import function_space
-from compute.mesh import TriangleMesh
-from compute.surface import clean_surface
+from compute.surface.cleaning import clean_surface
+from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere, joined, rectangle, tetrahedron
 
 orders = pytest.mark.parametrize("order", [1, 2, 3])

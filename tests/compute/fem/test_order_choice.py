@@ -9,7 +9,7 @@ from compute.fem import order_choice
 from compute.fem.eigenbasis import solve_eigenbasis
 from compute.fem.order_choice import BYTES_PER_UNKNOWN, choose_order
 from compute.memory import available_memory
-from compute.mesh import TriangleMesh
+from compute.surface.mesh import TriangleMesh
 from examples import humanoid
 from tests.shapes import icosphere, star
 

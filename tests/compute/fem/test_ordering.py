@@ -5,10 +5,10 @@ import pytest
 from scipy.sparse.linalg import splu
 
 from compute.fem.eigensolver import eigen_problem
-from compute.fem.ordering import LEAF_TRIANGLES, LEAST_SHARE, bisect_triangles, elimination_order
+from compute.fem.nested_dissection import LEAF_TRIANGLES, LEAST_SHARE, bisect_triangles, elimination_order
 from compute.fem.shift_invert import SHIFT
 from compute.fem.space import function_space
-from compute.mesh import TriangleMesh
+from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere, star, torus
 
 

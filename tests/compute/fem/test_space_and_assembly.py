@@ -5,7 +5,7 @@ import pytest
 
 from compute.fem.assembly import AREA_FLOOR, mass_matrix, stiffness_matrix
 from compute.fem.space import function_space
-from compute.mesh import TriangleMesh
+from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere, rectangle, tetrahedron
 
 orders = pytest.mark.parametrize("order", [1, 2, 3])

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from compute.mesh import TriangleMesh
 from compute.msc.diagram import PersistenceDiagram
 from compute.msc.links import links_of
 from compute.msc.morse_smale import FieldTopology, MorseSmaleComplex
+from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere, rectangle, torus
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from compute.mesh import TriangleMesh
 from compute.msc.critical_points import CriticalPoints, Kind, critical_points, rank_vertices
 from compute.msc.links import links_of
+from compute.surface.mesh import TriangleMesh
 from tests.compute.msc import surfaces
 from tests.shapes import icosphere, joined, rectangle, torus
 

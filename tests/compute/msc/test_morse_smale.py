@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from compute.mesh import TriangleMesh
 from compute.msc.critical_points import Kind, rank_vertices
 from compute.msc.integral_lines import ascent_of, exits_of, steepest_exits, trace
 from compute.msc.links import links_of
 from compute.msc.morse_smale import MorseSmaleComplex
+from compute.surface.mesh import TriangleMesh
 from tests.compute.msc.surfaces import closed_surface, noise, topology, waves
 from tests.shapes import icosphere, rectangle, torus
 

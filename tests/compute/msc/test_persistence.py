@@ -4,9 +4,9 @@ import gudhi
 import numpy as np
 import pytest
 
-from compute.mesh import TriangleMesh
 from compute.msc.cohomology import cocycles_of
 from compute.msc.morse_smale import FieldTopology, MorseSmaleComplex
+from compute.surface.mesh import TriangleMesh
 from tests.compute.msc import surfaces
 from tests.compute.msc.reference import pairs_of_the_paper
 from tests.compute.msc.surfaces import closed_surface, diagram_of, noise, topology, waves, with_holes

@@ -5,9 +5,9 @@ import pytest
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from compute.mesh import TriangleMesh
 from compute.msc.morse_smale import MorseSmaleComplex
 from compute.msc.reeb import ReebGraph
+from compute.surface.mesh import TriangleMesh
 from tests.compute.msc.surfaces import annulus, closed_surface, noise, topology, waves
 from tests.shapes import icosphere, joined, torus
 

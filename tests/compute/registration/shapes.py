@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from compute.mesh import TriangleMesh
+from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere
 
 # Direction, height and width of the lumps of a ball that looks like nothing else: no symmetry, no equal lumps.

@@ -6,8 +6,8 @@ from scipy.spatial import cKDTree
 
 from compute import TriangleMesh, analyze, correspond, match
 from compute.errors import RegistrationError
-from compute.registration.surface_points import SurfaceTree
-from compute.registration.transfer import (
+from compute.registration.dense.surface_points import SurfaceTree
+from compute.registration.dense.transfer import (
     islands,
     local_turns,
     majority_of_polygons,

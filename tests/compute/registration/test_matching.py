@@ -7,10 +7,10 @@ import pytest
 
 from compute.analysis import Analysis, analyze
 from compute.errors import Cancelled, RegistrationError
-from compute.mesh import TriangleMesh
-from compute.registration.matching import match, match_shapes
-from compute.registration.spectral_shape import SpectralShape, spectral_shape
-from compute.registration.zoomout import nearest_points, with_constant
+from compute.registration.eigenfunctions.matching import match, match_shapes
+from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape
+from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
+from compute.surface.mesh import TriangleMesh
 from examples import hand, quadruped
 from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, shuffled
 from tests.shapes import icosphere, torus

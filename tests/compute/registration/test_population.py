@@ -9,9 +9,9 @@ from scipy.spatial import cKDTree
 
 from compute.analysis import Analysis, analyze
 from compute.errors import RegistrationError
-from compute.mesh import TriangleMesh
-from compute.registration.part_matching import with_first_free
-from compute.registration.population import register
+from compute.registration.parts.part_matching import with_first_free
+from compute.registration.parts.population import register
+from compute.surface.mesh import TriangleMesh
 from tests.compute.registration.shapes import LUMPS, lumpy_ball, moved, shuffled
 
 HORN = ((-1, 0, 0.3), 1.0, 0.25)

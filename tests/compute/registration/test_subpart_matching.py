@@ -5,8 +5,8 @@ import pytest
 
 from compute.analysis import analyze
 from compute.errors import Cancelled
-from compute.registration.diagrams_matching import PartPairs, match_diagrams, match_tips
-from compute.registration.subpart_matching import match_subparts
+from compute.registration.paper.diagrams_matching import PartPairs, match_diagrams, match_tips
+from compute.registration.paper.subpart_matching import match_subparts
 from tests.compute.registration.shapes import lumpy_ball, moved, shuffled
 
 # A fork and a plain arm; coarse parts are the fork and the half below.

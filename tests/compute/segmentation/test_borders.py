@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from compute import LevelError, TriangleMesh, analyze, zero_level
-from compute.segmentation.borders import cross_edges
-from compute.segmentation.parts import cut_arcs
+from compute.segmentation.borders.level_set_borders import cross_edges
+from compute.segmentation.faces.level_cuts import cut_arcs
 from tests.shapes import icosphere, rectangle, star, torus
 
 

@@ -1,8 +1,8 @@
 import numpy as np
 
-from compute.segmentation.arc_areas import ArcAreas
-from compute.segmentation.branches import Branches, build_branches, repaired_labels
-from compute.segmentation.faces import FaceGraph
+from compute.segmentation.faces.arc_areas import ArcAreas
+from compute.segmentation.faces.branches import Branches, build_branches, repaired_labels
+from compute.segmentation.faces.face_graph import FaceGraph
 
 # Arcs 0 and 1 close at 2, arcs 2 and 3 at 4.
 PARENT = np.array([2, 2, 4, 4, -1])

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from compute import analyze
-from compute.mesh import TriangleMesh
-from compute.segmentation.branches import Branches
-from compute.segmentation.carrying import Divided, carried, renumbered
-from compute.segmentation.corrections import (
+from compute.segmentation.borders.edge_profile import vertex_heights
+from compute.segmentation.edits.corrections import (
     AWAY,
     BEFORE,
     BEYOND,
@@ -21,11 +19,13 @@ from compute.segmentation.corrections import (
     Labelling,
     corrected,
 )
-from compute.segmentation.faces import face_graph
-from compute.segmentation.parts import label_branches
-from compute.segmentation.profile import vertex_heights
-from compute.segmentation.redrawing import redraw, undivided
-from compute.segmentation.relief import relief_of
+from compute.segmentation.edits.part_tracking import Divided, carried, renumbered
+from compute.segmentation.edits.redrawing import redraw, undivided
+from compute.segmentation.edits.relief import relief_of
+from compute.segmentation.faces.branches import Branches
+from compute.segmentation.faces.face_graph import face_graph
+from compute.segmentation.parts.part_labels import label_branches
+from compute.surface.mesh import TriangleMesh
 from tests.compute.test_analysis import n_pieces
 from tests.shapes import star
 

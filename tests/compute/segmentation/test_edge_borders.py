@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from compute.segmentation.edge_borders import shortened_borders
-from compute.segmentation.faces import face_graph
-from compute.surface import clean_surface
+from compute.segmentation.borders.edge_borders import shortened_borders
+from compute.segmentation.faces.face_graph import face_graph
+from compute.surface.cleaning import clean_surface
 from tests.shapes import icosphere, rectangle
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze, solve_eigenbasis
-from compute.segmentation.function_hints import judge_eigenfunctions
+from compute.segmentation.parts.function_hints import judge_eigenfunctions
 from tests.shapes import icosphere, star
 
 

@@ -4,7 +4,7 @@ import pytest
 from compute import LevelError
 from compute.msc.links import links_of
 from compute.msc.morse_smale import FieldTopology
-from compute.segmentation.hierarchy import build_hierarchy
+from compute.segmentation.hierarchy.levels import build_hierarchy
 from tests.compute.segmentation.reference import parts_of_level
 from tests.shapes import icosphere, rectangle, torus
 

@@ -6,8 +6,8 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from compute import binding_weights, mirror_parts, skeleton
-from compute.skeleton.binding import MOST_BONES
-from compute.skeleton.symmetry import sides
+from compute.skeletons.binding import MOST_BONES
+from compute.skeletons.symmetry import sides
 
 # How far beyond a joint a turned bone may move anything, by the size of the character.
 BAND = 0.05

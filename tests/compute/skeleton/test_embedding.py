@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from compute import LevelError, MeshError, TriangleMesh, analyze, skeleton
-from compute.skeleton.interior import Interior
+from compute.skeletons.interior import Interior
 from tests.compute.skeleton.conftest import leaves, winding_numbers
 from tests.shapes import icosphere, joined, star, torus
 

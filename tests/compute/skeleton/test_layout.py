@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze, skeleton
-from compute.registration.population import register
-from compute.skeleton.layout import level_with_tips
+from compute.registration.parts.population import register
+from compute.skeletons.layout import level_with_tips
 from examples import humanoid
 from tests.shapes import star
 

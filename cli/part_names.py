@@ -1,0 +1,16 @@
+"""What parts are called outside Blender."""
+
+import bpy
+
+from ..operators.mesh_state import part_table, registration_record
+
+
+def names_of_parts(mesh: bpy.types.Mesh) -> dict[int, str]:
+    """Return the names that the user gave to parts of an analyzed mesh."""
+    given = registration_record.tables_of(mesh).get(part_table.NAMES, {})
+    return {int(part): str(name) for part, name in given.items() if part.isdecimal()}
+
+
+def name_of_part(label: int, given: dict[int, str]) -> str:
+    """Return the user's name, or "body" or "part_3", which every file format keeps as it is."""
+    return given.get(label, f"part_{label}" if label else "body")

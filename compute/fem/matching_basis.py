@@ -1,0 +1,38 @@
+"""The eigenfunctions that shapes are matched by: many, free, and accurate on any mesh."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..progress import Progress
+from ..surface.cleaning import Surface
+from .eigenbasis import Eigenbasis, solve_on_surface
+
+# Functions for matching and dense maps, and the least number of unknowns that carry them accurately: elements of a
+# higher order are used where linear ones have fewer.
+MATCHING_FUNCTIONS = 100
+MATCHING_UNKNOWNS = 3000
+
+
+def solve_for_matching(surface: Surface, shown: Eigenbasis | None, progress: Progress) -> Eigenbasis:
+    """Return free eigenfunctions of a surface, with the signs of those that the user sees, if there are any."""
+    order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)
+    n_functions = min(MATCHING_FUNCTIONS, _n_unknowns(surface, order) - 1)
+    basis = solve_on_surface(surface, n_functions, order=order, progress=progress)
+    return basis if shown is None else _with_signs_of(shown, basis, len(surface.vertex_of_input))
+
+
+def _with_signs_of(shown: Eigenbasis, basis: Eigenbasis, n_vertices: int) -> Eigenbasis:
+    """Return a basis whose functions point where those do that the user sees; elements of two orders may differ."""
+    n_shared = min(len(shown.values), len(basis.values)) if shown.boundary == basis.boundary else 0
+    functions = basis.functions.copy()
+    agreement = (shown.functions[:n_vertices, :n_shared] * functions[:n_vertices, :n_shared]).sum(axis=0)
+    functions[:, :n_shared] *= np.where(agreement < 0, -1.0, 1.0)
+    return replace(basis, functions=functions)
+
+
+def _n_unknowns(surface: Surface, order: int) -> int:
+    """Return how many unknowns elements of an order have on a surface."""
+    n_vertices, n_triangles = len(np.unique(surface.mesh.triangles)), len(surface.mesh.triangles)
+    n_edges = len(surface.mesh.edges.vertices)
+    return n_vertices + (order - 1) * n_edges + (order - 1) * (order - 2) // 2 * n_triangles

@@ -1,0 +1,1 @@
+"""Maps from vertices to points of another surface, and what is carried along them. Imports eigenfunctions."""

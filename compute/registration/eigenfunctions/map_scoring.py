@@ -1,0 +1,203 @@
+"""Which hypothesis is right: every one is refined to a map that can be judged as geometry."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...progress import Progress, silent
+from ...surface.mesh import Floats, Ints
+from .hypotheses import Hypotheses, nearest_orthogonal, spectrum_of
+from .moments import agreement
+from .spectral_shape import SpectralShape
+from .zoomout import nearest_points, sample_functions, with_constant, zoom_out
+
+# Two candidates are one if their maps of the first functions differ by less, relative to the identity's norm.
+SAME_MAP = 0.3
+JUDGED_FUNCTIONS = 10
+# Cost and relative distance to the next best at which doubt begins: among 400 pairs of poses all below were right.
+DOUBTFUL_COST = 3e-6
+# Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
+LEAST_COST = 2e-9
+# Neighbouring points that land more than this many times farther apart are torn from each other.
+TORN = 3.0
+# What no map does without: at 1000 samples single points near thin features always are.
+USUAL_TEARING = 0.003
+NEIGHBOURS = 6
+# Below this share of triangles that keep their orientation a map is torn or inside out.
+LEAST_ORIENTED = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A hypothesis after refinement, with what speaks for and against it.
+
+    Attributes
+    ----------
+    start : (K, K) float64
+        The hypothesis.
+    functional_map : (k, k) float64
+        Refined, target x source, the constant included.
+    nearest : (s,) int64
+        For each of the target's samples, the source's sample (its place in ``samples``) that it is mapped to.
+    symmetric, alternating : float
+        Agreement of the moments after refinement, 1 at best: of all that is measured here, the one that separates
+        right from wrong most often.
+    commutation : float
+        How far the map is from commuting with the Laplace operator: 0 for an isometry.
+    orientation : float
+        Area-weighted agreement of the mapped triangles' normals, from -1 to 1.
+    curvature : float
+        Correlation of the mean curvature, from -1 to 1; it tells front from back, where the alternating moments
+        are blind.
+    tearing : float
+        Share of neighbouring points that are torn apart, from 0 to 1; swapped arms on the right body show here.
+    """
+
+    start: Floats
+    functional_map: Floats
+    nearest: Ints
+    symmetric: float
+    alternating: float
+    commutation: float
+    orientation: float
+    curvature: float
+    tearing: float
+
+    @cached_property
+    def cost(self) -> float:
+        """Small for good maps; the factors are what separates right from wrong on posed characters."""
+        moments = (1.02 - self.symmetric) * (1.02 - self.alternating)
+        geometry = (2 - self.orientation) * (1.05 - self.curvature) * (USUAL_TEARING + self.tearing)
+        return self.commutation * moments * geometry
+
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """What candidates are sorted by: torn maps last."""
+        return self.orientation < LEAST_ORIENTED, self.cost
+
+
+def distinct_candidates(ranked: Sequence[Candidate], n_wanted: int) -> list[Candidate]:
+    """Return the first few candidates that differ from all better ones."""
+    kept: list[Candidate] = []
+    for candidate in ranked:
+        if len(kept) == n_wanted:
+            break
+        if all(_difference(candidate, better) > SAME_MAP for better in kept):
+            kept.append(candidate)
+    return kept
+
+
+def confidence_of(candidate: Candidate, rivals: Sequence[Candidate]) -> float:
+    """Return 0 to 1: low where a candidate is costly, or where a different one is as good."""
+    others = [rival.cost for rival in rivals if _difference(candidate, rival) > SAME_MAP and not rival.rank[0]]
+    tie = min((candidate.cost + LEAST_COST) / (min(others, default=np.inf) + LEAST_COST), 1.0)
+    return fit_of(candidate) * (1 - tie)
+
+
+def fit_of(candidate: Candidate) -> float:
+    """Return 0 to 1: low where a candidate is costly, whatever else there is."""
+    return 0.0 if candidate.orientation < LEAST_ORIENTED else 1 / (1 + (candidate.cost / DOUBTFUL_COST) ** 2)
+
+
+def _difference(one: Candidate, other: Candidate) -> float:
+    first = slice(1, 1 + JUDGED_FUNCTIONS)
+    gap = one.functional_map[first, first] - other.functional_map[first, first]
+    return float(np.linalg.norm(gap) / np.sqrt(len(gap)))
+
+
+class Judge:
+    """Refines and judges hypotheses for one pair of shapes; keeps what all of them need.
+
+    Parameters
+    ----------
+    source, target : SpectralShape
+    sizes : sequence of int
+        Of the functional maps, rising.
+    """
+
+    def __init__(self, source: SpectralShape, target: SpectralShape, sizes: Sequence[int]) -> None:
+        self._source, self._target, self._sizes = source, target, sizes
+        self._source_samples = sample_functions(source.functions[source.samples], ())
+        self._target_samples = sample_functions(target.functions[target.samples], sizes)
+        self._spectra = spectrum_of(source), spectrum_of(target)
+        last = max(sizes)
+        self._embedding = source.project(source.positions)[:last]
+        self._neighbours = _neighbours(target)
+        self._normals = source.project(source.normals)[:last]
+
+    def judge(
+        self, found: Hypotheses, signs: Mapping[int, int] | None = None, progress: Progress = silent
+    ) -> list[Candidate]:
+        """Return a candidate for each hypothesis, in their order.
+
+        Parameters
+        ----------
+        found : Hypotheses
+        signs : mapping of int to +1 or -1, optional
+            Signs that are kept whatever fits better, by the source's function from 0.
+        progress : Progress, optional
+            May raise `Cancelled`.
+        """
+        candidates = []
+        for number, start in enumerate(found.maps):
+            progress(number / len(found), "Refining what was found")
+            candidates.append(self._candidate(start, signs or {}))
+        return candidates
+
+    def _candidate(self, start: Floats, signs: Mapping[int, int]) -> Candidate:
+        here, there = self._source_samples, self._target_samples
+        grown = zoom_out(with_constant(start), here, there, self._sizes, signs)
+        nearest = nearest_points(grown, here.functions, there.functions)
+        return Candidate(
+            start, grown, nearest, *self._moments(grown, len(start)),
+            self._commutation(grown), self._orientation(grown), self._curvature(nearest), self._tearing(nearest),
+        )  # fmt: skip
+
+    def _moments(self, grown: Floats, level: int) -> tuple[float, float]:
+        """Return how far the moments agree under the refined map, made orthogonal, of a hypothesis' functions."""
+        rotation = nearest_orthogonal(grown[1 : level + 1, 1 : level + 1])
+        here, there = (spectrum.moments.damped(spectrum.values[:level]) for spectrum in self._spectra)
+        symmetric = agreement(rotation, here.symmetric, there.symmetric)
+        return float(symmetric), float(agreement(rotation, here.alternating, there.alternating))
+
+    def _commutation(self, grown: Floats) -> float:
+        source, target = self._source.values[: grown.shape[1]], self._target.values[: grown.shape[0]]
+        return float(((grown * source - target[:, None] * grown) ** 2).sum() / (source**2).sum())
+
+    def _orientation(self, grown: Floats) -> float:
+        """Compare the normals of the target's triangles, mapped to the source, with the normals that are there."""
+        target = self._target
+        coefficients = np.hstack([grown @ self._embedding, grown @ self._normals])
+        mapped = target.functions[:, : len(grown)] @ coefficients
+        a, b, c = mapped[target.triangles].swapaxes(0, 1)
+        side = np.einsum("ij,ij->i", np.cross((b - a)[:, :3], (c - a)[:, :3]), (a + b + c)[:, 3:])
+        return float((target.areas * np.sign(side)).sum() / target.areas.sum())
+
+    def _curvature(self, nearest: Ints) -> float:
+        here = self._source.curvature[self._source.samples][nearest]
+        there = self._target.curvature[self._target.samples]
+        return _correlation(here, there)
+
+    def _tearing(self, nearest: Ints) -> float:
+        pairs, length = self._neighbours
+        mapped = self._source.positions[self._source.samples[nearest]]
+        mapped_length = np.linalg.norm(mapped[pairs[:, 0]] - mapped[pairs[:, 1]], axis=1)
+        return float((mapped_length > TORN * length).mean()) if len(pairs) else 0.0
+
+
+def _neighbours(shape: SpectralShape) -> tuple[Ints, Floats]:
+    """Return pairs of samples that lie side by side, not across a thin part, and how far apart they are."""
+    positions, normals = shape.positions[shape.samples], shape.normals[shape.samples]
+    n_near = min(NEIGHBOURS + 1, len(positions))
+    near = cKDTree(positions).query(positions, n_near)[1][:, 1:]
+    pairs = np.stack([np.repeat(np.arange(len(positions)), n_near - 1), near.ravel()], axis=1)
+    pairs = pairs[np.einsum("ij,ij->i", normals[pairs[:, 0]], normals[pairs[:, 1]]) > 0]
+    return pairs, np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
+
+
+def _correlation(one: Floats, other: Floats) -> float:
+    one, other = one - one.mean(), other - other.mean()
+    return float(one @ other / max(np.linalg.norm(one) * np.linalg.norm(other), np.finfo(float).tiny))

@@ -1,0 +1,210 @@
+"""Matching: order, sign, mixing and handedness of the eigenfunctions of two shapes, with nothing to click."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ...analysis import Analysis
+from ...errors import RegistrationError
+from ...progress import Progress, rising, section, silent
+from ...surface.cleaning import Surface
+from ...surface.mesh import Floats, Ints
+from .hypotheses import Effort, find_hypotheses, spectrum_of
+from .map_scoring import Candidate, Judge, confidence_of, distinct_candidates, fit_of
+from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
+from .zoomout import MATCHING_SIZES, rounded
+
+# How wide the search is; the next effort is made only where the ones before leave doubt.
+EFFORTS = (
+    Effort(),
+    Effort(n_seeds=30, n_branches=2, n_kept=12, n_refined=10),
+    Effort(levels=(6, 8, 10, 12, 14, 16), n_seeds=16, n_branches=2, n_kept=10, n_refined=10),
+)
+# A matching at least this sure is not searched for any further.
+SURE = 0.75
+MAX_ALTERNATIVES = 3
+# Signs can be given for the functions that hypotheses are made of; the rest follows from them.
+FLIPPABLE = max(EFFORTS[0].levels)
+
+
+@dataclass(frozen=True, eq=False)
+class Matching:
+    """Which function of a source is which of a target.
+
+    Attributes
+    ----------
+    map : (kt, ks) float64
+        Near-orthogonal, target x source, the constant left out, for functions on surfaces of area 1: the source's
+        functions, carried to the target, are the target's functions @ map.
+    confidence : float
+        From 0 to 1; above one half means that the matching is very likely right.
+    alternatives : tuple of Matching
+        At most three others, best first, without alternatives of their own.
+    same_topology : bool
+        Whether both shapes have the same triangles, so that vertices correspond by their numbers.
+    mirrored : bool
+        Whether the source's mirror image was matched.
+    symmetric, alternating : float
+        Agreement of the moment tensors, 1 at best.
+    """
+
+    map: Floats
+    confidence: float
+    alternatives: tuple["Matching", ...] = ()
+    same_topology: bool = False
+    mirrored: bool = False
+    symmetric: float = 1.0
+    alternating: float = 1.0
+
+    @cached_property
+    def order(self) -> Ints:
+        """(ks,) the target's function (from 0) that each of the source's functions mostly is."""
+        return rounded(self.map)[0]
+
+    @cached_property
+    def signs(self) -> Ints:
+        """(ks,) +1 or -1, the sign with which it is that function."""
+        return rounded(self.map)[1]
+
+
+def match(
+    source: Analysis,
+    target: Analysis,
+    *,
+    flips: Mapping[int, int] | None = None,
+    mirrored: bool = False,
+    progress: Progress | None = None,
+) -> Matching:
+    """Match the eigenfunctions of two shapes.
+
+    Parameters
+    ----------
+    source, target : Analysis
+    flips : mapping of int to +1 or -1, optional
+        The sign that a function of the source (from 1) is to have, whatever fits better; all others follow. Functions
+        point where those of ``eigenbasis`` do.
+    mirrored : bool
+        Match the mirror image of the source: a left hand with a right one.
+    progress : callable, optional
+        ``progress(fraction, text)``; may raise `Cancelled`.
+
+    Raises
+    ------
+    RegistrationError
+        If a sign is given for a function that has none, or is not +1 or -1.
+    """
+    progress = rising(progress or silent)
+    here = matching_shape(source, section(progress, 0, 0.3))
+    there = matching_shape(target, section(progress, 0.3, 0.6))
+    rest = section(progress, 0.6, 1)
+    return match_surfaces(source.surface, target.surface, here, there, flips=flips, mirrored=mirrored, progress=rest)
+
+
+def matching_shape(analysis: Analysis, progress: Progress = silent) -> SpectralShape:
+    """Return a shape ready to be matched, with functions that are computed now if they were not before."""
+    shape = spectral_shape(analysis.find_matching_basis(section(progress, 0, 0.8)))
+    prepare_shape(shape, section(progress, 0.8, 1))
+    return shape
+
+
+def match_surfaces(
+    source: Surface,
+    target: Surface,
+    source_shape: SpectralShape,
+    target_shape: SpectralShape,
+    *,
+    flips: Mapping[int, int] | None = None,
+    mirrored: bool = False,
+    progress: Progress = silent,
+) -> Matching:
+    """Match two shapes as `match` does, where what it makes of them first is at hand."""
+    signs = _checked_signs(flips or {})
+    if not signs and not mirrored and share_topology(source, target):
+        return match_by_number(source_shape, target_shape)
+    return match_shapes(source_shape, target_shape, signs, mirrored=mirrored, progress=progress)
+
+
+def share_topology(source: Surface, target: Surface) -> bool:
+    """Whether two surfaces have the same triangles over the same vertices."""
+    same_vertices = np.array_equal(source.vertex_of_input, target.vertex_of_input)
+    return same_vertices and np.array_equal(source.mesh.triangles, target.mesh.triangles)
+
+
+def match_by_number(source: SpectralShape, target: SpectralShape) -> Matching:
+    """Return the matching of two shapes whose points correspond by their numbers."""
+    size = min(*MATCHING_SIZES[-1:], source.n_functions, target.n_functions)
+    carried = target.project(source.functions[:, :size])[1:size, 1:]
+    return Matching(carried, 1.0, same_topology=True)
+
+
+def match_shapes(
+    source: SpectralShape,
+    target: SpectralShape,
+    signs: Mapping[int, int] | None = None,
+    *,
+    mirrored: bool = False,
+    progress: Progress = silent,
+) -> Matching:
+    """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
+    if mirrored:
+        source = source.mirrored()
+    n_available = min(source.n_functions, target.n_functions)
+    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+    if signs:
+        candidates, rivals = _candidates_with_signs(source, target, judge, signs, progress)
+    else:
+        candidates = rivals = _ranked_candidates(source, target, judge, progress)
+    best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
+    confidence = confidence_of(best, rivals)
+    # What the best one leaves over is for the alternatives, if they fit.
+    alternatives = tuple(_matching_of(other, (1 - confidence) * fit_of(other), mirrored) for other in others)
+    return replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
+
+
+def _ranked_candidates(
+    source: SpectralShape, target: SpectralShape, judge: Judge, progress: Progress
+) -> list[Candidate]:
+    """Return judged hypotheses, best first; the search is widened until the best of them is sure."""
+    spectra = spectrum_of(source), spectrum_of(target)
+    ranked: list[Candidate] = []
+    for number, effort in enumerate(EFFORTS):
+        searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
+        found = find_hypotheses(*spectra, effort, progress=searching)
+        judged = judge.judge(found.best(effort.n_refined), progress=refining)
+        ranked = sorted(ranked + judged, key=lambda candidate: candidate.rank)
+        if confidence_of(ranked[0], ranked) >= SURE:
+            break
+    return ranked
+
+
+def _candidates_with_signs(
+    source: SpectralShape, target: SpectralShape, judge: Judge, signs: Mapping[int, int], progress: Progress
+) -> tuple[list[Candidate], list[Candidate]]:
+    """Return judged hypotheses that keep given signs, best first, and with them the best that do not need to."""
+    keeping, leaving = _halves(progress)
+    effort, spectra = EFFORTS[0], (spectrum_of(source), spectrum_of(target))
+    judged = []
+    for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
+        found = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
+        judged.append(sorted(judge.judge(found, given, refining), key=lambda candidate: candidate.rank))
+    return judged[0], judged[0] + judged[1]
+
+
+def _halves(progress: Progress) -> tuple[Progress, Progress]:
+    return section(progress, 0, 0.5), section(progress, 0.5, 1)
+
+
+def _matching_of(candidate: Candidate, confidence: float, mirrored: bool) -> Matching:
+    functional_map = candidate.functional_map[1:, 1:]
+    return Matching(functional_map, confidence, (), False, mirrored, candidate.symmetric, candidate.alternating)
+
+
+def _checked_signs(flips: Mapping[int, int]) -> dict[int, int]:
+    for number, sign in flips.items():
+        if not 1 <= number <= FLIPPABLE:
+            raise RegistrationError(f"Only the signs of functions 1 to {FLIPPABLE} can be given, not that of {number}.")
+        if sign not in (-1, 1):
+            raise RegistrationError(f"The sign of a function is +1 or -1, not {sign}.")
+    return {number - 1: int(sign) for number, sign in flips.items()}

@@ -1,0 +1,171 @@
+"""A surface as matching sees it: unit area, wound outward, with its first eigenfunctions."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from ...fem.assembly import stiffness_matrix
+from ...fem.eigenbasis import Eigenbasis
+from ...fem.space import function_space
+from ...fields.scalar_field import refined_net
+from ...progress import Progress
+from ...surface.mesh import Floats, Ints, TriangleMesh
+from ...surface.orientation import reversed_where, wrongly_wound
+from .moments import Moments, moments_of, point_areas
+
+# Points at which functions of two shapes are compared.
+N_SAMPLES = 1000
+# Functions that moments are taken of: the last level of matching and the places a function may move by.
+MOMENT_FUNCTIONS = 18
+# What matching asks of a shape, and is kept there.
+KEPT = ("samples", "moments", "normals", "curvature")
+# Time of the smoothing of curvature, in units of the area: details below 2 % of the shape's size do not count.
+CURVATURE_TIME = 5e-4
+
+
+@dataclass(frozen=True, eq=False)
+class SpectralShape:
+    """A surface of area 1 around the origin with its first eigenfunctions, the constant among them; n points.
+
+    Attributes
+    ----------
+    positions : (n, 3) float64
+    triangles : (m, 3) int64
+        Wound consistently and outward.
+    values : (k,) float64
+        Eigenvalues of the unit surface, ascending from the zero of the constant.
+    functions : (n, k) float64
+        Orthonormal on the unit surface; the first is the constant 1.
+    node : (n,) int64
+        The unknown of the eigenbasis that each point is; numbers below V are vertices of the input.
+    input_triangle : (m,) int64
+        The triangle of the input that each triangle lies in.
+    """
+
+    positions: Floats
+    triangles: Ints
+    values: Floats
+    functions: Floats
+    node: Ints
+    input_triangle: Ints
+
+    @property
+    def n_functions(self) -> int:
+        """How many functions, the constant included."""
+        return len(self.values)
+
+    def mirrored(self) -> "SpectralShape":
+        """Return the mirror image, wound outward again; its functions stay."""
+        return replace(self, positions=self.positions * [-1.0, 1.0, 1.0], triangles=self.triangles[:, ::-1])
+
+    @cached_property
+    def area_vectors(self) -> Floats:
+        """(m, 3) outward normal of each triangle, as long as its area."""
+        a, b, c = self.positions[self.triangles].swapaxes(0, 1)
+        return np.cross(b - a, c - a) / 2
+
+    @cached_property
+    def areas(self) -> Floats:
+        """(m,) area of each triangle."""
+        return np.linalg.norm(self.area_vectors, axis=1)
+
+    @cached_property
+    def point_areas(self) -> Floats:
+        """(n,) a third of the area of the triangles around each point."""
+        return point_areas(self.triangles, self.areas, len(self.positions))
+
+    @cached_property
+    def normals(self) -> Floats:
+        """(n, 3) unit normal at each point."""
+        around = np.repeat(self.area_vectors, 3, axis=0)
+        sums = [np.bincount(self.triangles.ravel(), column, len(self.positions)) for column in around.T]
+        return _unit_rows(np.stack(sums, axis=1))
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Moment tensors of the first functions, without the constant."""
+        return moments_of(self.functions[:, 1 : 1 + MOMENT_FUNCTIONS], self.triangles, self.areas)
+
+    @cached_property
+    def samples(self) -> Ints:
+        """(s,) points spread evenly over the surface, far from each other."""
+        return farthest_points(self.positions, N_SAMPLES)
+
+    @cached_property
+    def curvature(self) -> Floats:
+        """(n,) mean curvature, smoothed and cut off softly: positive where the surface bulges outward."""
+        mesh = TriangleMesh(self.positions, self.triangles)
+        bending = stiffness_matrix(function_space(mesh, 1)) @ self.positions
+        integrated = np.einsum("ij,ij->i", bending, self.normals) / 2
+        coefficients = self.functions.T @ integrated / (1 + CURVATURE_TIME * self.values)
+        smooth = self.functions @ coefficients
+        return np.tanh(smooth / (3 * np.median(np.abs(smooth)) + np.finfo(float).tiny))
+
+    def shares_at_points(self, labels: Ints, n_labels: int) -> csr_array:
+        """Return (n, n_labels) how much area of each label lies around each point, a third of each triangle there.
+
+        Parameters
+        ----------
+        labels : (m,) int
+            Label of each of the shape's triangles.
+        """
+        columns = np.repeat(labels, 3)
+        entries = (np.repeat(self.areas / 3, 3), (self.triangles.ravel(), columns))
+        return coo_array(entries, shape=(len(self.positions), n_labels)).tocsr()
+
+    def project(self, values: Floats) -> Floats:
+        """Return (k, ...) coefficients of values (n, ...) given at the points."""
+        return (self.functions * self.point_areas[:, None]).T @ values
+
+
+def spectral_shape(basis: Eigenbasis) -> SpectralShape:
+    """Return the surface of an eigenbasis of free ("neumann") functions, on the net through its nodes."""
+    net = refined_net(basis)
+    turned = wrongly_wound(basis.surface.mesh)[net.triangle_of_surface]
+    node, corner = np.unique(reversed_where(net.triangles, turned), return_inverse=True)
+    area = net.areas.sum()
+    constant = np.ones((len(node), 1))
+    return SpectralShape(
+        _unit_positions(net.positions[node], corner.reshape(-1, 3), area),
+        corner.reshape(-1, 3),
+        np.append(0.0, basis.values * area),
+        np.hstack([constant, basis.functions[node] * np.sqrt(area)]),
+        node,
+        basis.surface.input_triangle[net.triangle_of_surface],
+    )
+
+
+def prepare_shape(shape: SpectralShape, progress: Progress) -> None:
+    """Compute what is kept on a shape, telling in between; the callback may raise `Cancelled`."""
+    for number, name in enumerate(KEPT):
+        progress(number / len(KEPT), "Measuring the functions")
+        getattr(shape, name)
+
+
+def farthest_points(positions: Floats, n_points: int) -> Ints:
+    """Return up to ``n_points`` indices, each the farthest from all before it; the first is farthest from the mean."""
+    if len(positions) <= n_points:
+        return np.arange(len(positions))
+    columns = np.ascontiguousarray(positions.T)
+    chosen = np.empty(n_points, dtype=np.int64)
+    distance = np.full(len(positions), np.inf)
+    chosen[0] = ((positions - positions.mean(axis=0)) ** 2).sum(axis=1).argmax()
+    for place in range(1, n_points):
+        x, y, z = columns - positions[chosen[place - 1]][:, None]
+        np.minimum(distance, x * x + y * y + z * z, out=distance)
+        chosen[place] = distance.argmax()
+    return chosen
+
+
+def _unit_positions(positions: Floats, triangles: Ints, area: float) -> Floats:
+    """Return positions scaled to area 1, with the surface's centre of mass at the origin."""
+    unit = (positions - positions[triangles].mean(axis=(0, 1))) / np.sqrt(area)
+    a, b, c = unit[triangles].swapaxes(0, 1)
+    weights = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return unit - np.average((a + b + c) / 3, axis=0, weights=weights)
+
+
+def _unit_rows(rows: Floats) -> Floats:
+    return rows / np.maximum(np.linalg.norm(rows, axis=1), np.finfo(float).tiny)[:, None]

@@ -1,0 +1,94 @@
+"""The paper's way for fine levels: coarse parts first, then what they divide into, each pair analyzed on its own.
+
+The first functions of a whole shape do not tell fingers from each other; those of an arm alone do.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...analysis import Analysis, analyze_part, segment_part
+from ...progress import Progress, rising, silent
+from ...segmentation.parts.part_labels import Segmentation
+from .diagrams_matching import DiagramMatching, PartPairs, match_diagrams, match_tips
+
+# A part with fewer faces has no parts of its own to be matched.
+LEAST_FACES = 60
+
+
+@dataclass(frozen=True, eq=False)
+class SubpartPairs:
+    """What two parts that correspond divide into.
+
+    Attributes
+    ----------
+    of_source, of_target : int
+        Labels of the two parts.
+    source, target : Segmentation
+        Of the triangles of those parts alone, in the order of the mesh.
+    matching : DiagramMatching
+        Of their own functions.
+    pairs : PartPairs
+        Labels in ``source`` and ``target`` that correspond.
+    """
+
+    of_source: int
+    of_target: int
+    source: Segmentation
+    target: Segmentation
+    matching: DiagramMatching
+    pairs: PartPairs
+
+
+def match_subparts(
+    source: Analysis,
+    target: Analysis,
+    parts: tuple[Segmentation, Segmentation],
+    pairs: PartPairs,
+    *,
+    progress: Progress | None = None,
+) -> tuple[SubpartPairs, ...]:
+    """Cut off the parts that correspond, analyze each on its own, and pair what it divides into.
+
+    Parameters
+    ----------
+    source, target : Analysis
+    parts : pair of Segmentation
+        Of the source and of the target, at a coarse level.
+    pairs : PartPairs
+        Which of these parts correspond, such as `match_tips` tells.
+    progress : Progress, optional
+        Told before each pair; may raise `Cancelled`.
+
+    Returns
+    -------
+    tuple of SubpartPairs
+        For the pairs of which both parts divide further.
+
+    References
+    ----------
+    .. [1] Reuter, IJCV 2010, section 4.7: "the registered regions can be cut off and the whole analysis can be
+       continued on the subparts".
+    """
+    progress = rising(progress or silent)
+    found = []
+    for number, labels in enumerate(zip(pairs.source.tolist(), pairs.target.tolist(), strict=True)):
+        progress(number / len(pairs.source), f"Matching inside part {labels[0]}")
+        if all(_can_be_divided(whole, label) for whole, label in zip(parts, labels, strict=True)):
+            pieces = [
+                analyze_part(one, whole, label)
+                for one, whole, label in zip((source, target), parts, labels, strict=True)
+            ]
+            found.append(_match_pieces(pieces[0], pieces[1], labels))
+    progress(1.0, "Done")
+    return tuple(one for one in found if len(one.pairs.source))
+
+
+def _can_be_divided(whole: Segmentation, label: int) -> bool:
+    return bool(np.count_nonzero(whole.labels == label) >= LEAST_FACES)
+
+
+def _match_pieces(source: Analysis, target: Analysis, labels: tuple[int, int]) -> SubpartPairs:
+    own = segment_part(source), segment_part(target)
+    matching = match_diagrams(source, target)
+    return SubpartPairs(*labels, *own, matching, match_tips(source, target, own, matching))

@@ -1,0 +1,1 @@
+"""The same parts on every shape. Imports eigenfunctions and dense."""

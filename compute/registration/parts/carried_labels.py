@@ -1,0 +1,209 @@
+"""The parts of a reference on another shape: carried over point by point, with the borders that the reference has."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+
+from ...analysis import Analysis
+from ...segmentation.faces.branches import Branches, connected_branches, repaired_labels
+from ...segmentation.faces.face_graph import FaceGraph, face_graph
+from ...segmentation.hierarchy.levels import Hierarchy
+from ...segmentation.parts.part_labels import BODY, BranchLabels, Parts, label_behind
+from ...surface.cleaning import Surface
+from ...surface.heat_smoothing import smoothed
+from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, sum_by
+from ..eigenfunctions.spectral_shape import SpectralShape
+
+# Borders are smoothed over this distance, in units of the root of the area: the points that a map lands on lie so far
+# apart.
+BORDER_WIDTH = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class FaceLabels:
+    """A label for each face, to be used like the labels of branches.
+
+    Attributes
+    ----------
+    level : int
+    faces : (F,) int32
+    parts : Parts
+    warnings : tuple of str
+    resting : tuple of int
+    """
+
+    level: int
+    faces: NDArray[np.int32]
+    parts: Parts
+    warnings: tuple[str, ...] = ()
+    resting: tuple[int, ...] = ()
+
+    def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
+        """Return the label of each face, whatever branch it is on."""
+        return self.faces
+
+
+@dataclass(frozen=True, eq=False)
+class Divisible:
+    """What registration keeps of an analyzed shape; F faces.
+
+    Attributes
+    ----------
+    surface : Surface
+    shape : SpectralShape
+    hierarchy : Hierarchy
+    branches : tuple of Branches
+        Of the faces.
+    graph : FaceGraph
+    face : (m,) int64
+        The face that each of the shape's triangles lies in.
+    """
+
+    surface: Surface
+    shape: SpectralShape
+    hierarchy: Hierarchy
+    branches: tuple[Branches, ...]
+    graph: FaceGraph
+    face: Ints
+
+    def shares_at_points(self, labels: Ints, n_labels: int) -> Floats:
+        """Return (n, n_labels) which share of the area around each point has each label (F,)."""
+        shares = self.shape.shares_at_points(labels[self.face], n_labels).toarray()
+        return np.asarray(shares / np.maximum(self.shape.point_areas, np.finfo(float).tiny)[:, None])
+
+
+def divisible(analysis: Analysis, shape: SpectralShape, face_of_triangle: Ints | None = None) -> Divisible:
+    """Return what registration keeps of an analysis.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    shape : SpectralShape
+        Of its matching basis.
+    face_of_triangle : (T,) int64, optional
+        The polygon each triangle of the input belongs to; the triangles themselves if None.
+    """
+    branches = analysis.branches(face_of_triangle)
+    if face_of_triangle is None:
+        face_of_triangle = np.arange(len(analysis.mesh.triangles))
+    graph = face_graph(analysis.mesh, analysis.surface, face_of_triangle)
+    face = face_of_triangle[shape.input_triangle]
+    return Divisible(analysis.surface, shape, analysis.hierarchy, branches, graph, face)
+
+
+@dataclass(frozen=True, eq=False)
+class GivenParts:
+    """The parts that are carried; P parts without the body.
+
+    Attributes
+    ----------
+    labels : (F,) int
+        Of the reference's faces.
+    id, parent : (P,) int64
+    is_drawn : (P,) bool
+        Whether a part was made by hand: there is no feature that a target must have for it.
+    shares : (n, 1 + P) float64
+        Which share of the area around each of the reference's points is body, and which each part.
+    """
+
+    labels: Ints
+    id: Ints
+    parent: Ints
+    is_drawn: Bools
+    shares: Floats
+
+    @property
+    def highest(self) -> int:
+        """The highest label."""
+        return int(self.id.max(initial=BODY))
+
+
+def given_parts(labels: Ints, parts: Parts, reference: Divisible) -> GivenParts:
+    """Return the parts of a division of the reference's faces."""
+    is_part = parts.id != BODY
+    ids = parts.id[is_part]
+    shares = reference.shares_at_points(labels.astype(np.int64), int(ids.max(initial=BODY)) + 1)
+    return GivenParts(labels, ids, parts.parent[is_part], parts.saddle[is_part] < 0, shares[:, np.append(BODY, ids)])
+
+
+def carry_labels(
+    given: GivenParts, target: Divisible, landing: Ints | None, cuts: list[Ints], level: int
+) -> FaceLabels:
+    """Label the faces of a target.
+
+    Parameters
+    ----------
+    given : GivenParts
+    target : Divisible
+    landing : (n,) int64, optional
+        The reference's point that each of the target's points corresponds to; None if the faces do by their numbers.
+    cuts : list of (A,) int64
+        For each tree of the target, the part that is cut off at each arc: parts of the reference, which are left out
+        if they are not among them, and others with higher numbers, which have the borders that are cut here.
+    level : int
+        The target's, for what is told of it.
+    """
+    by_arcs = label_behind(cuts, target.hierarchy, target.branches, level)
+    if landing is None:
+        return FaceLabels(level, given.labels.astype(np.int32), _counted(given, given.labels, by_arcs, target))
+    flat = by_arcs.of_faces(target.branches).astype(np.int64)
+    present = np.append(by_arcs.parts.id, given.id[given.is_drawn])
+    labels = np.where(flat > given.highest, flat, _carried(given, target, landing, present))
+    labels = _connected(labels[target.graph.stands_for], target.graph)
+    return FaceLabels(level, labels.astype(np.int32), _counted(given, labels, by_arcs, target))
+
+
+def _carried(given: GivenParts, target: Divisible, landing: Ints, present: Ints) -> Ints:
+    """Return (F,) the label that the greater part of each face has, after smoothing."""
+    shape = target.shape
+    shares = (given.shares @ _heirs(given, present))[landing]
+    soft = smoothed(TriangleMesh(shape.positions, shape.triangles), shares, BORDER_WIDTH)
+    rows = np.repeat(target.face, 3)
+    n_faces = len(target.graph.area)
+    corners = coo_array((np.repeat(shape.areas, 3), (rows, shape.triangles.ravel())), shape=(n_faces, len(soft)))
+    return np.append(BODY, given.id)[np.argmax(corners.tocsr() @ soft, axis=1)]
+
+
+def _heirs(given: GivenParts, present: Ints) -> Floats:
+    """Return (1 + P, 1 + P) what takes the place of body and parts: themselves, or what absent ones grow out of."""
+    ids = np.append(BODY, given.id).tolist()
+    parent = dict(zip(given.id.tolist(), given.parent.tolist(), strict=True))
+    stays = {BODY, *present.tolist()}
+    heirs = np.zeros((len(ids), len(ids)))
+    for row, part in enumerate(ids):
+        while part not in stays or part not in ids:
+            part = parent.get(part, BODY)
+        heirs[row, ids.index(part)] = 1
+    return heirs
+
+
+def _connected(labels: Ints, graph: FaceGraph) -> Ints:
+    """Return (F,) labels of which each is in one piece, its largest; the body may be in pieces."""
+    (pieces,) = connected_branches([labels], graph)
+    return repaired_labels(pieces.arc, pieces)[pieces.of_face]
+
+
+def _counted(given: GivenParts, labels: Ints, by_arcs: BranchLabels, target: Divisible) -> Parts:
+    """Return the table of parts: origins from the arcs where they are cut off there, from the reference otherwise."""
+    n = 1 + max(int(labels.max(initial=BODY)), given.highest)
+    parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
+    known = by_arcs.parts.id < n
+    origin = by_arcs.parts.id[known]
+    parent[origin] = by_arcs.parts.parent[known]
+    extremum[origin], saddle[origin] = by_arcs.parts.extremum[known], by_arcs.parts.saddle[known]
+    parent[given.id] = given.parent
+    area, count = sum_by(labels, target.graph.area, n), np.bincount(labels, minlength=n)
+    ids = np.flatnonzero(count)
+    return Parts(ids, _present_parents(parent, count > 0)[ids], extremum[ids], saddle[ids], area[ids], count[ids])
+
+
+def _present_parents(parent: Ints, is_present: Bools) -> Ints:
+    """Return for each part the nearest one around it that has faces."""
+    for _ in parent:
+        absent = (parent != BODY) & ~is_present[parent]
+        if not absent.any():
+            break
+        parent = np.where(absent, parent[parent], parent)
+    return parent

@@ -1,0 +1,199 @@
+"""Registration of any number of shapes at once, through one reference."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import Executor, Future, wait
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from ...analysis import Analysis
+from ...errors import RegistrationError
+from ...progress import Progress, rising, section, silent
+from ...segmentation.parts.part_labels import Parts, Segmentation
+from ...surface.mesh import Ints
+from ..dense.matched_points import source_points
+from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
+from .carried_labels import Divisible, FaceLabels, carry_labels, divisible
+from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
+
+# Seconds between looks whether shapes in an executor are ready, and whether the user has cancelled.
+INTERVAL = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The shape that all others are registered to.
+
+    Attributes
+    ----------
+    shape : Divisible
+    parts : ReferenceParts
+    """
+
+    shape: Divisible
+    parts: ReferenceParts
+
+
+@dataclass(frozen=True, eq=False)
+class Registered:
+    """One shape, registered.
+
+    Attributes
+    ----------
+    segmentation : Segmentation
+        Equal label = same part as on the reference; larger labels have no partner there.
+    matching : Matching
+        Of the reference (source) and this shape (target).
+    """
+
+    segmentation: Segmentation
+    matching: Matching
+
+
+def register(
+    analyses: Sequence[Analysis],
+    *,
+    reference: int = 0,
+    level: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> list[Segmentation]:
+    """Divide shapes into the same parts.
+
+    Parameters
+    ----------
+    analyses : sequence of Analysis
+    reference : int
+        Which of them gives the parts.
+    level : int, optional
+        Level of the reference; its default level if None.
+    executor : concurrent.futures.Executor, optional
+        Runs the pairs: threads, processes or a cluster that offers this interface.
+    progress : Progress, optional
+        Told several times a second; may raise `Cancelled`. Pairs that run in an executor by then are finished there.
+
+    Returns
+    -------
+    list of Segmentation
+        One for each shape: equal label = same part. A part without a partner on the reference has a label that no
+        other shape has.
+
+    Raises
+    ------
+    RegistrationError
+        If there is no such shape.
+    LevelError
+        If the reference has no such level.
+    """
+    if not 0 <= reference < len(analyses):
+        raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
+    progress = rising(progress or silent)
+    progress(0.0, "Preparing the reference")
+    own = analyses[reference].segment(level=level)
+    prepared = prepare_reference(analyses[reference], own)
+    others = [analysis for number, analysis in enumerate(analyses) if number != reference]
+    run = _run_here if executor is None else partial(_run_elsewhere, executor)
+    segmentations = [result.segmentation for result in run(prepared, others, progress)]
+    segmentations.insert(reference, own)
+    return with_own_labels(segmentations, reference)
+
+
+def prepare_reference(analysis: Analysis, segmentation: Segmentation) -> Reference:
+    """Return a shape with its parts in the form that others are registered to."""
+    shape = divisible(analysis, matching_shape(analysis))
+    return with_parts(shape, segmentation.labels.astype(np.int64), segmentation.parts, segmentation.level)
+
+
+def with_parts(shape: Divisible, labels: Ints, parts: Parts, level: int) -> Reference:
+    """Return a shape with a division of its faces in the form that others are registered to."""
+    return Reference(shape, reference_parts(labels, parts, level, shape))
+
+
+def register_one(reference: Reference, target: Analysis, progress: Progress = silent) -> Registered:
+    """Match one shape with the reference and divide it into the same parts."""
+    shape = divisible(target, matching_shape(target, section(progress, 0, 0.4)))
+    matching = match_divisible(reference, shape, progress=section(progress, 0.4, 0.8))
+    labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, section(progress, 0.8, 1))
+    return Registered(Segmentation(labels.faces, labels.parts, labels.level), matching)
+
+
+def match_divisible(
+    reference: Reference,
+    target: Divisible,
+    *,
+    flips: Mapping[int, int] | None = None,
+    mirrored: bool = False,
+    progress: Progress = silent,
+) -> Matching:
+    """Match the reference (source) with a target, as `match` does."""
+    here, there = reference.shape, target
+    return match_surfaces(
+        here.surface, there.surface, here.shape, there.shape, flips=flips, mirrored=mirrored, progress=progress
+    )
+
+
+def label_matched(
+    reference: Reference, target: Divisible, matching: Matching, first_free: int, progress: Progress = silent
+) -> FaceLabels:
+    """Divide a shape into the parts of the reference by a matching that is known.
+
+    Parameters
+    ----------
+    first_free : int
+        The least label for parts without a partner on the reference.
+    progress : Progress, optional
+        May raise `Cancelled`.
+    """
+    source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
+    landing = source_points(source, target.shape, matching, section(progress, 0, 0.8))
+    progress(0.8, "Carrying the parts over")
+    cuts, level = partner_cuts(reference.parts, target, landing)
+    cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
+    same_faces = matching.same_topology and np.array_equal(reference.shape.face, target.face)
+    return carry_labels(reference.parts.given, target, None if same_faces else landing, cuts, level)
+
+
+def with_own_labels(segmentations: Sequence[Segmentation], reference: int) -> list[Segmentation]:
+    """Renumber the parts without a partner, so that no two shapes share such a label."""
+    n_shared = int(segmentations[reference].parts.id.max())
+    first_free = n_shared + 1
+    renumbered = []
+    for segmentation in segmentations:
+        own = np.unique(segmentation.parts.id[segmentation.parts.id > n_shared])
+        renumbered.append(_renumbered(segmentation, own, first_free) if len(own) else segmentation)
+        first_free += len(own)
+    return renumbered
+
+
+def _renumbered(segmentation: Segmentation, own: Ints, first_free: int) -> Segmentation:
+    parts = segmentation.parts
+    table = np.arange(int(parts.id.max()) + 1)
+    table[own] = first_free + np.arange(len(own))
+    new_parts = replace(parts, id=table[parts.id], parent=table[parts.parent])
+    return replace(segmentation, labels=table[segmentation.labels].astype(np.int32), parts=new_parts)
+
+
+def _run_here(reference: Reference, targets: Sequence[Analysis], progress: Progress) -> Iterator[Registered]:
+    """Yield the registered shapes one after the other."""
+    for number, target in enumerate(targets):
+        told = section(progress, number / len(targets), (number + 1) / len(targets))
+        yield register_one(reference, target, told)
+        progress((number + 1) / len(targets), f"Registered {number + 1} of {len(targets)} shapes")
+
+
+def _run_elsewhere(
+    executor: Executor, reference: Reference, targets: Sequence[Analysis], progress: Progress
+) -> Iterator[Registered]:
+    """Yield the registered shapes in their order; those that have not begun are given up where this is cancelled."""
+    futures = [executor.submit(register_one, reference, target) for target in targets]
+    try:
+        open_futures: set[Future[Registered]] = set(futures)
+        while open_futures:
+            _, open_futures = wait(open_futures, timeout=INTERVAL)
+            n_done = len(futures) - len(open_futures)
+            progress(n_done / len(futures), f"Registered {n_done} of {len(futures)} shapes")
+        yield from (future.result() for future in futures)
+    finally:
+        for future in futures:
+            future.cancel()

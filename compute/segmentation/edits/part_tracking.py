@@ -1,0 +1,155 @@
+"""Parts found again after another analysis of the same mesh: where most of their faces are the same."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...surface.mesh import Bools, Floats, Ints, sum_by
+from ..faces.branches import Branches
+from ..faces.level_cuts import cut_arcs
+from ..hierarchy.levels import Hierarchy
+from ..hierarchy.nesting import first_own_part
+from .corrections import LEVEL, MERGE, PAINT, SPLIT, Correction
+
+# A part is the same if what is in both has at least this share of what is in either.
+SAME = 0.5
+# Levels that a part is sought on.
+MOST_LEVELS = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Divided:
+    """A hierarchy with the faces of its arcs and the area (F,) of each face."""
+
+    hierarchy: Hierarchy
+    branches: tuple[Branches, ...]
+    area: Floats
+
+
+@dataclass(frozen=True)
+class Place:
+    """An arc at which a part is cut off: which tree, which arc, and on which level."""
+
+    tree: int
+    arc: int
+    level: int
+
+
+def place_of(divided: Divided, part: int, level: int, mode: str, branch_levels: tuple[tuple[int, int], ...]) -> Place:
+    """Return where a part is cut off on a level.
+
+    Raises
+    ------
+    LookupError
+        If the level has no such part.
+    """
+    level = min(level, divided.hierarchy.n_levels - 1)
+    cuts = cut_arcs(divided.hierarchy, divided.branches, level, mode, branch_levels)
+    for tree, cut in enumerate(cuts):
+        for arc in np.flatnonzero(cut == part).tolist():
+            return Place(tree, arc, level)
+    raise LookupError(part)
+
+
+def carried(items: tuple[Correction, ...], old: Divided, new: Divided) -> dict[int, tuple[int, int]]:
+    """Return for each part that corrections mention the (number, level) it has in another analysis, if it is there.
+
+    Numbers that corrections gave to parts of their own are numbered on from the last one of the new analysis.
+    """
+    found = {0: (0, 0)}
+    shift = first_own_part(new.hierarchy.trees[0]) - first_own_part(old.hierarchy.trees[0])
+    for mode in sorted({item.mode for item in items}):
+        candidates = _candidates(new, mode)
+        for item in items:
+            if item.mode != mode:
+                continue
+            for part in _mentioned(item):
+                if part >= first_own_part(old.hierarchy.trees[0]):
+                    found[part] = (part + shift, item.level)
+                elif part not in found:
+                    same = _same_part(_inside(old, part, item, items), new, candidates)
+                    found |= {} if same is None else {part: same}
+    return found
+
+
+def renumbered(
+    items: tuple[Correction, ...], found: dict[int, tuple[int, int]], old: Hierarchy, new: Hierarchy
+) -> tuple[Correction, ...]:
+    """Return the corrections whose parts were all found, with their new numbers and levels."""
+    return tuple(
+        replace(
+            item,
+            part=found[item.part][0],
+            other=found[item.other][0] if item.kind in (MERGE, SPLIT) else item.other,
+            value=same_level(int(item.value), old, new) if item.kind == LEVEL else item.value,
+            level=found[item.part][1] or item.level,
+        )
+        for item in items
+        if all(part in found for part in _mentioned(item))
+    )
+
+
+def same_level(level: int, old: Hierarchy, new: Hierarchy) -> int:
+    """Return the level of a hierarchy that keeps what is as persistent as what a level of another one keeps."""
+    falling = np.append(old.persistence[::-1], 0.0)
+    if level <= 0 or old.value_range == 0:
+        return 0
+    kept, dropped = falling[min(level, len(falling) - 1) - 1], falling[min(level, len(falling) - 1)]
+    return new.level_of_threshold(float(kept + dropped) / (2 * old.value_range))
+
+
+def _mentioned(item: Correction) -> tuple[int, ...]:
+    return (item.part, item.other) if item.kind in (MERGE, SPLIT) else (item.part,)
+
+
+def _inside(old: Divided, part: int, item: Correction, items: tuple[Correction, ...]) -> Bools:
+    """Tell which faces (F,) lie in a part as it was when the correction was made; none if it cannot be found."""
+    branch_levels = tuple((other.part, int(other.value)) for other in items if other.kind == LEVEL)
+    try:
+        place = place_of(old, part, item.level, item.mode, branch_levels)
+    except LookupError:
+        return np.zeros(len(old.area), dtype=bool)
+    branches = old.branches[place.tree]
+    return old.hierarchy.trees[place.tree].subtree(place.arc)[branches.arc][branches.of_face]
+
+
+def _candidates(new: Divided, mode: str) -> dict[tuple[int, int], tuple[int, int]]:
+    """Return (number, level) for each (tree, arc) at which some level cuts a part off."""
+    n_levels, default_level = new.hierarchy.n_levels, new.hierarchy.default_level
+    # The default level first, as its numbers are those that are seen first.
+    levels = [default_level, *range(1, min(n_levels, MOST_LEVELS)), n_levels - 1]
+    found: dict[tuple[int, int], tuple[int, int]] = {}
+    for level in dict.fromkeys(levels):
+        for tree, cut in enumerate(cut_arcs(new.hierarchy, new.branches, level, mode)):
+            for arc in np.flatnonzero(cut).tolist():
+                found.setdefault((tree, arc), (int(cut[arc]), level))
+    return found
+
+
+def _same_part(
+    inside: Bools, new: Divided, candidates: dict[tuple[int, int], tuple[int, int]]
+) -> tuple[int, int] | None:
+    """Return the (number, level) of the part that has most in common with some faces."""
+    best, share = None, SAME
+    for tree, (grown, branches) in enumerate(zip(new.hierarchy.trees, new.branches, strict=True)):
+        of_face, n_arcs = branches.arc[branches.of_face], len(grown.parent)
+        common = sum_by(of_face[inside], new.area[inside], n_arcs)
+        own = sum_by(of_face, new.area, n_arcs)
+        for arc, parent in enumerate(grown.parent.tolist()):
+            if parent >= 0:
+                common[parent] += common[arc]
+                own[parent] += own[arc]
+        either = own + new.area[inside].sum() - common
+        for (of_tree, arc), named in candidates.items():
+            if of_tree == tree and common[arc] > share * either[arc]:
+                best, share = named, float(common[arc] / either[arc])
+    return best
+
+
+def carried_painting(painted: Ints, items: tuple[Correction, ...], found: dict[int, tuple[int, int]]) -> Ints:
+    """Return the parts (F,) that faces were painted with, by their new numbers; -1 elsewhere."""
+    kept = np.full(len(painted), -1)
+    for item in items:
+        if item.kind == PAINT and item.part in found:
+            kept[painted == item.part] = found[item.part][0]
+    return kept

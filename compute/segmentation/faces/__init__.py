@@ -1,0 +1,1 @@
+"""The faces of the input, and the arc and the branch that each belongs to. Imports hierarchy."""

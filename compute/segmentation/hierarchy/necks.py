@@ -1,0 +1,95 @@
+"""Where a shape narrows: the lengths of the level sets along the arcs."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...fields.scalar_field import Net, ScalarField, share_below
+from ...surface.mesh import Floats, Ints
+from .arc_tree import ArcTree
+
+# Level sets that are measured on each arc, evenly spaced over its height.
+N_SAMPLES = 8
+# An arc lower than this fraction of the field's range is a thin shell; its level sets are not measured.
+LEAST_HEIGHT = 0.02
+# The last of a part, this fraction of its area, does not tell whether the part is blunt.
+TIP = 0.3
+
+
+def measured(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcTree:
+    """Return the tree with its heights, and what the level sets tell of arcs that are no thin shells.
+
+    Parameters
+    ----------
+    tree : ArcTree
+    arc : (n,) int64
+        Arc of each vertex of the field's net.
+    field : ScalarField
+    """
+    rising = -field.values if tree.is_of_maxima else field.values
+    bottom, top = _heights(rising, tree)
+    height = np.where(tree.saddle < 0, 0.0, (top - bottom) / max(field.value_range, float(np.finfo(float).tiny)))
+    tall = np.flatnonzero(height > LEAST_HEIGHT)
+    levels = top[tall, None] - (top - bottom)[tall, None] * (np.arange(N_SAMPLES) + 0.05) / N_SAMPLES
+    length, area = np.zeros((2, len(height), N_SAMPLES))
+    length[tall], area[tall] = _level_sets(rising, arc, tree, field.net, tall, levels)
+    return replace(
+        tree,
+        height=height,
+        closing_length=length[:, 0],
+        longest=length.max(axis=1),
+        roundness=_roundness(tree.part, length, area),
+    )
+
+
+def _level_sets(
+    values: Floats, arc: Ints, tree: ArcTree, net: Net, chosen: Ints, levels: Floats
+) -> tuple[Floats, Floats]:
+    """Return the lengths of level sets of the chosen arcs, and the areas they cut off."""
+    order = np.argsort(values[net.triangles], axis=1, kind="stable")
+    triangles = np.take_along_axis(net.triangles, order, axis=1)
+    heights = values[triangles]
+    innermost = arc[net.triangles].min(axis=1)
+    length, area = np.zeros((2, *levels.shape))
+    for row, number in enumerate(chosen.tolist()):
+        above = tree.subtree(number)[innermost]
+        whole = above & (heights[:, 2] <= levels[row].min())
+        near = np.flatnonzero(above & ~whole & (heights[:, 0] < levels[row].max()))
+        for column, level in enumerate(levels[row].tolist()):
+            length[row, column] = _level_set_length(heights[near], net.positions[triangles[near]], level)
+            area[row, column] = net.areas[near] @ share_below(heights[near], np.array(level))
+        area[row] += net.areas[whole].sum()
+    return length, area
+
+
+def _roundness(part: Ints, length: Floats, area: Floats) -> Floats:
+    """Return the least length²/area of the level sets between each arc's leaf and its end, tips left out."""
+    roundness = np.zeros(len(part))
+    for arc in np.flatnonzero(area[:, 0]).tolist():
+        on_the_way = part[: arc + 1] == part[arc]
+        lengths, areas = length[: arc + 1][on_the_way], area[: arc + 1][on_the_way]
+        counted = areas > TIP * area[arc, 0]
+        roundness[arc] = (lengths[counted] ** 2 / areas[counted]).min()
+    return roundness
+
+
+def _heights(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
+    """Return the values between which each arc lies: where its leaf is or its children close, and where it closes."""
+    top = np.where(tree.saddle < 0, np.inf, values[tree.saddle])
+    bottom = values[tree.extremum]
+    children = np.flatnonzero(tree.parent >= 0)
+    bottom[tree.parent[children]] = top[children]
+    return bottom, top
+
+
+def _level_set_length(heights: Floats, corners: Floats, level: float) -> float:
+    """Return the length of a level set in triangles (m, 3) whose corners (m, 3, 3) are sorted by height."""
+    crossed = (heights[:, 0] < level) & (level < heights[:, 2])
+    a, b, c = heights[crossed].T
+    low, middle, high = corners[crossed].swapaxes(0, 1)
+    below = level <= b
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(below, (level - a) / (b - a), (level - b) / (c - b))[:, None]
+    short_side = np.where(below[:, None], low + share * (middle - low), middle + share * (high - middle))
+    long_side = low + ((level - a) / (c - a))[:, None] * (high - low)
+    return float(np.linalg.norm(long_side - short_side, axis=1).sum())

@@ -1,0 +1,125 @@
+"""Levels overlaid: which cuts between features are worth a part of their own."""
+
+import numpy as np
+
+from ...surface.mesh import Bools, Floats, Ints, sum_by
+from .arc_tree import ArcTree
+from .necks import LEAST_HEIGHT
+
+# An inner part is worth keeping if its border is a neck: shorter than this fraction of the longest level sets on its
+# two sides (their geometric mean).
+NECK = 0.81
+# And if it has at least this fraction of the area of the whole.
+LEAST_AREA = 0.05
+# A feature is worth a part if it stands out: the least length²/area of its level sets is below this, area being what
+# they cut off, its tip left out. A hemisphere has 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
+BLUNT = 4.4
+# Beyond the default level, who asks for more features gets all that stand out more than a hemisphere.
+HEMISPHERE = 2 * np.pi
+
+
+def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> Bools:
+    """Tell which arcs (A,) end a part when all levels up to this one are overlaid.
+
+    Up to the default level every feature is cut off unless it is blunt, and so is what lies between two of its saddles
+    (the torso between arms and legs), unless it is a thin shell or no neck shows where it ends. Beyond the default
+    level these parts stay, and smaller ones are cut off inside them (fingers in an arm) unless they are flat.
+
+    Parameters
+    ----------
+    tree : ArcTree
+    level : int
+    default_level : int
+        Of the hierarchy.
+    area : (A,) float64
+        Share of each arc in the area of its shell.
+    """
+    is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)) & ~tree.is_shell, area)
+    is_finer = tree.is_cut(level) & (tree.closing >= default_level)
+    was_feature = tree.least_closing_inside > tree.closing
+    return is_cut | tree.is_shell | (is_finer & was_feature & (tree.roundness < HEMISPHERE))
+
+
+def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
+    """Return the number (A,) of the part that is cut off at each arc, 0 where nothing is.
+
+    The outermost on the way of a leaf has the leaf's number, so that an arm stays the same part when its fingers
+    appear; the others have numbers of their own, beyond those of the leaves.
+    """
+    # Numbers of leaves are followed by those of inner parts between maxima, then between minima, then of saddles that
+    # survive always.
+    first = 1 + tree.n_roots + tree.n_features * (1 if tree.is_of_maxima else 2)
+    number = np.zeros(len(is_cut), dtype=np.int64)
+    seen: set[int] = set()
+    for arc in np.flatnonzero(is_cut)[::-1].tolist():
+        part, closing = int(tree.part[arc]), int(tree.closing[arc])
+        inner = first + closing if closing >= 0 else first_own_part(tree) + arc
+        number[arc] = inner if part in seen else part
+        seen.add(part)
+    return number
+
+
+def first_own_part(tree: ArcTree) -> int:
+    """Return the least number that no part of any level has."""
+    return number_behind(tree.n_roots, tree.n_features)
+
+
+def number_behind(n_roots: int, n_features: int) -> int:
+    """Return the number that follows those of leaves and of inner parts of two trees."""
+    return 1 + n_roots + 3 * n_features
+
+
+def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
+    """Tell which of the cut arcs (A,) end something that is worth a part."""
+    is_cut = candidates.copy()
+    height, longest, inside = tree.height.copy(), tree.longest.copy(), area.copy()
+    border = tree.closing_length.copy()
+    has_cut_inside = np.zeros(len(area), dtype=bool)
+    last: dict[int, int] = {}
+    for parent, meeting in _meeting_arcs(tree.parent):
+        for arc in meeting:
+            # What has gathered on the way from the last cut.
+            previous = last.get(int(tree.part[arc]))
+            if previous is not None and not is_cut[previous]:
+                height[arc] += height[previous]
+                longest[arc] = max(longest[arc], longest[previous])
+                inside[arc] += inside[previous]
+                # A thin shell was not measured; it ends nearly where it begins.
+                border[arc] = border[arc] or border[previous]
+            last[int(tree.part[arc])] = arc
+        for arc in [arc for arc in meeting if is_cut[arc]]:
+            if has_cut_inside[arc]:
+                is_neck = _narrowing(border, longest, arc, meeting) < NECK
+                is_cut[arc] = is_neck and height[arc] > LEAST_HEIGHT and inside[arc] > LEAST_AREA
+            else:
+                is_cut[arc] = tree.roundness[arc] < BLUNT
+        has_cut_inside[parent] = (has_cut_inside | is_cut)[meeting].any()
+    return _with_a_body(tree, is_cut, is_cut & has_cut_inside, area)
+
+
+def _meeting_arcs(parent: Ints) -> list[tuple[int, list[int]]]:
+    """Return for each arc that others end at which these are; whatever is inside comes before."""
+    meeting: dict[int, list[int]] = {}
+    for arc, end in enumerate(parent.tolist()):
+        if end >= 0:
+            meeting.setdefault(end, []).append(arc)
+    return sorted(meeting.items())
+
+
+def _narrowing(border: Floats, longest: Floats, arc: int, meeting: list[int]) -> float:
+    """Return how narrow the shape is where an arc meets others, seen from both sides: the mean, 1 for a cylinder."""
+    shares = {other: border[other] / longest[other] if border[other] else 1.0 for other in meeting}
+    beyond = min((share for other, share in shares.items() if other != arc), default=1.0)
+    return float(np.sqrt(shares[arc] * beyond))
+
+
+def _with_a_body(tree: ArcTree, is_cut: Bools, is_inner: Bools, area: Floats) -> Bools:
+    """Leave the largest inner part to the body if only a belt would be left of it, as at a waist."""
+    region = tree.spread(np.where(is_cut | tree.is_shell, np.arange(1, len(area) + 1), 0))
+    size = sum_by(region, area, len(area) + 1)
+    kept = is_cut.copy()
+    for body in (0, *(1 + np.flatnonzero(tree.is_shell))):
+        next_to_body = np.flatnonzero(is_inner & (region[tree.parent] == body))
+        if size[body] < LEAST_AREA and len(next_to_body):
+            kept[next_to_body[size[1 + next_to_body].argmax()]] = False
+    return kept

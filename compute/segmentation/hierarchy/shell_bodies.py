@@ -1,0 +1,54 @@
+"""Shells that were analyzed each by itself: every one but the first gets a body of its own beside the common one."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...surface.mesh import Ints
+from .arc_tree import NEVER, ArcTree
+from .levels import Hierarchy
+
+
+def with_bodies(hierarchy: Hierarchy, shell_of_vertex: Ints) -> Hierarchy:
+    """Return the hierarchy of a field on several shells with one root, and an arc for the whole of each shell.
+
+    The trees of the shells stand side by side under the new root. That of the first shell is the common body as far as
+    it is no part; around each other one lies an arc that is cut off at every level, with a number of its own. All
+    arcs keep their places, and parts the order of their numbers.
+
+    Parameters
+    ----------
+    hierarchy : Hierarchy
+        Each of its trees has one root for each shell.
+    shell_of_vertex : (n,) int64
+        The shell that each vertex of the net lies on.
+    """
+    trees = tuple(_with_bodies(tree, shell_of_vertex[tree.extremum]) for tree in hierarchy.trees)
+    return replace(hierarchy, trees=trees)
+
+
+def _with_bodies(tree: ArcTree, shell: Ints) -> ArcTree:
+    """Return one tree, given the shell (A,) of each arc."""
+    roots = np.flatnonzero(tree.parent < 0)
+    roots = roots[np.argsort(shell[roots])]
+    n_arcs, n_more = len(tree.parent), len(roots) - 1
+    whole, root = n_arcs + np.arange(n_more), n_arcs + n_more
+    parent = np.concatenate([tree.parent, np.full(n_more, root), [-1]])
+    parent[roots] = [root, *whole]
+    part = np.where(tree.part > tree.n_roots, tree.part + n_more, tree.part)
+    bodies = tree.n_roots + 1 + np.arange(n_more)
+    none, nothing = np.full(n_more + 1, -1), np.zeros(n_more + 1)
+    return replace(
+        tree,
+        n_roots=tree.n_roots + n_more,
+        parent=parent,
+        part=np.concatenate([part, bodies, part[roots[:1]]]),
+        extremum=np.concatenate([tree.extremum, tree.extremum[roots[1:]], tree.extremum[roots[:1]]]),
+        saddle=np.concatenate([tree.saddle, none]),
+        # The saddle of no pair closes them, so they survive always.
+        closing=np.concatenate([tree.closing, none[1:], [NEVER]]),
+        height=np.concatenate([tree.height, nothing]),
+        closing_length=np.concatenate([tree.closing_length, nothing]),
+        longest=np.concatenate([tree.longest, nothing]),
+        roundness=np.concatenate([tree.roundness, nothing]),
+    )

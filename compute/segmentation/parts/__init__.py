@@ -1,0 +1,1 @@
+"""Labels for the faces and the table of parts. Imports all else of segmentation."""

@@ -1,0 +1,247 @@
+"""Parts of a level: labels for the faces and a table of what they are."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LevelError
+from ...surface.mesh import Floats, Ints, sum_by
+from ..borders.level_set_borders import Polyline
+from ..edits.corrections import LEVEL, Corrections, Labelling, corrected
+from ..faces.branches import Branches, repaired_labels
+from ..faces.level_cuts import cut_arcs
+from ..hierarchy.levels import Hierarchy
+
+BODY = 0
+MODES = ("features", "nested")
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """The parts of a segmentation, one row each, the body first if it has faces.
+
+    Attributes
+    ----------
+    id : (P,) int64
+        Label of the part; 0 is the body. A part has the same id at every level.
+    parent : (P,) int64
+        Id of the part it grows out of; 0 for the body.
+    extremum, saddle : (P,) int64
+        Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body.
+    area : (P,) float64
+        In the mesh's unit of length, squared.
+    n_triangles : (P,) int64
+        How many faces carry the label.
+    """
+
+    id: Ints
+    parent: Ints
+    extremum: Ints
+    saddle: Ints
+    area: Floats
+    n_triangles: Ints
+
+    def __len__(self) -> int:
+        return len(self.id)
+
+
+@dataclass(frozen=True, eq=False)
+class BranchLabels:
+    """A level as labels of branches: what is left to do for the faces is a look-up.
+
+    Attributes
+    ----------
+    level : int
+    of_branch : (B,) int64
+        The part of each branch.
+    parts : Parts
+    warnings : tuple of str
+    resting : tuple of int
+        The places of corrections that have nothing to do at this level.
+    """
+
+    level: int
+    of_branch: Ints
+    parts: Parts
+    warnings: tuple[str, ...] = ()
+    resting: tuple[int, ...] = ()
+
+    def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
+        """Return the label of each face from its branch."""
+        return self.of_branch.astype(np.int32)[branches[0].of_face]
+
+
+@dataclass(frozen=True, eq=False)
+class Segmentation:
+    """The faces of a mesh divided into parts.
+
+    Attributes
+    ----------
+    labels : (T,) int32
+        Part of each triangle of the input; 0 is the body.
+    parts : Parts
+    level : int
+    warnings : tuple of str
+        Sentences for the user, such as that a number of parts could not be reached.
+    """
+
+    labels: NDArray[np.int32]
+    parts: Parts
+    level: int
+    warnings: tuple[str, ...] = ()
+    _trace: Callable[[], tuple[Polyline, ...]] | None = field(default=None, repr=False)
+
+    @cached_property
+    def borders(self) -> tuple[Polyline, ...]:
+        """The lines inside the triangles where parts end, made when first asked for.
+
+        Raises
+        ------
+        LevelError
+            If the parts were carried over from another mesh, so that no level sets bound them.
+        """
+        if self._trace is None:
+            raise LevelError("Only parts of the mesh's own field have borders inside triangles; these end at edges.")
+        return self._trace()
+
+    @cached_property
+    def n_parts(self) -> int:
+        """Number of different labels, the body included if it has faces."""
+        return len(self.parts)
+
+
+def label_branches(
+    hierarchy: Hierarchy,
+    branches: tuple[Branches, ...],
+    *,
+    level: int | None = None,
+    threshold: float | None = None,
+    n_parts: int | None = None,
+    mode: str = "features",
+    corrections: Corrections | None = None,
+) -> BranchLabels:
+    """Label the branches at one level.
+
+    Parameters
+    ----------
+    hierarchy : Hierarchy
+    branches : tuple of Branches
+        One for each tree of the hierarchy.
+    level : int, optional
+        From 0 (all is body) to ``hierarchy.n_levels - 1``.
+    threshold : float, optional
+        Least persistence of a part, as a fraction of the field's range.
+    n_parts : int, optional
+        Number of labels, the body included; where it cannot be reached, the largest below it.
+    mode : "features" or "nested"
+        Only the features, or also what lies between them when all levels up to this one are overlaid.
+    corrections : Corrections, optional
+        Changes made by hand; they refer to these branches.
+
+    Raises
+    ------
+    LevelError
+        If the level or the mode does not exist, or more than one of the three choices is given.
+    """
+    if mode not in MODES:
+        raise LevelError(f'The mode is "features" or "nested", not "{mode}".')
+    if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
+        raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
+    at_level = partial(_at_level, hierarchy, branches, mode, corrections or Corrections())
+    if n_parts is not None:
+        return _reach_number(at_level, hierarchy.n_levels, n_parts)
+    if level is None:
+        level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
+    return at_level(hierarchy.checked_level(level))
+
+
+def _at_level(
+    hierarchy: Hierarchy, branches: tuple[Branches, ...], mode: str, corrections: Corrections, level: int
+) -> BranchLabels:
+    cuts = cut_arcs(hierarchy, branches, level, mode, corrections.branch_levels)
+    return label_behind(cuts, hierarchy, branches, level, corrections)
+
+
+def label_behind(
+    cuts: list[Ints],
+    hierarchy: Hierarchy,
+    branches: tuple[Branches, ...],
+    level: int,
+    corrections: Corrections | None = None,
+) -> BranchLabels:
+    """Label all branches by the part that is cut off next to them, as given for each arc of each tree."""
+    corrections = corrections or Corrections()
+    origins = _origins(hierarchy, cuts)
+    bodies = tuple(np.unique(hierarchy.trees[0].body).tolist())
+    of_branch = repaired_labels(_overlaid(cuts, hierarchy, branches), branches[0], bodies)
+    labelling = Labelling(of_branch, origins.parent, _resting_levels(cuts, corrections), bodies)
+    if corrections.items:
+        labelling = corrected(labelling, branches[0], corrections)
+    parts = _tabulate(labelling, origins, branches[0])
+    return BranchLabels(level, labelling.of_branch, parts, resting=labelling.resting)
+
+
+def _resting_levels(cuts: list[Ints], corrections: Corrections) -> tuple[int, ...]:
+    """Return the places of the levels of branches whose part is not cut off."""
+    present = set(np.concatenate(cuts).tolist())
+    return tuple(row for row, item in enumerate(corrections.items) if item.kind == LEVEL and item.part not in present)
+
+
+def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...]) -> Ints:
+    """Return the label of each branch; where parts of maxima and of minima overlap, the smaller one lies on top."""
+    body = hierarchy.trees[0].body[branches[0].arc]
+    overlaid, size = body, np.full(len(body), np.inf)
+    for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True):
+        label = tree.spread(cut)[pieces.arc]
+        area = sum_by(label, pieces.area)[label]
+        is_on_top = (label > BODY) & (label != body) & (area < size)
+        overlaid, size = np.where(is_on_top, label, overlaid), np.where(is_on_top, area, size)
+    return overlaid
+
+
+def _reach_number(at_level: Callable[[int], BranchLabels], n_levels: int, n_parts: int) -> BranchLabels:
+    """Return the lowest level with that many labels, or with the most below it."""
+    if n_parts < 1:
+        raise LevelError(f"The number of parts is at least 1, not {n_parts}.")
+    best = at_level(0)
+    for level in range(1, n_levels):
+        labels = at_level(level)
+        if len(labels.parts) > n_parts:
+            break
+        if len(labels.parts) > len(best.parts):
+            best = labels
+    if len(best.parts) == n_parts:
+        return best
+    warning = f"This shape cannot be divided into exactly {n_parts} parts; it has {len(best.parts)} now."
+    return replace(best, warnings=(warning,))
+
+
+@dataclass(frozen=True, eq=False)
+class _Origins:
+    """By number of the part: what it grows out of, its tip, and the saddle it is cut off at."""
+
+    parent: Ints
+    extremum: Ints
+    saddle: Ints
+
+
+def _origins(hierarchy: Hierarchy, cuts: list[Ints]) -> _Origins:
+    n = 1 + max(int(cut.max(initial=0)) for cut in cuts)
+    parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
+    for tree, cut in zip(hierarchy.trees, cuts, strict=True):
+        arcs = np.flatnonzero(cut > BODY)
+        extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
+        parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
+    return _Origins(parent, extremum, saddle)
+
+
+def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Parts:
+    area = sum_by(labelling.of_branch, pieces.area)
+    n_faces = sum_by(labelling.of_branch, pieces.n_faces.astype(float)).astype(np.int64)
+    ids = np.flatnonzero(n_faces > 0)
+    n_new = max(0, len(labelling.parent) - len(origins.saddle))
+    extremum, saddle = (np.pad(column, (0, n_new), constant_values=-1) for column in (origins.extremum, origins.saddle))
+    return Parts(ids, labelling.parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids])

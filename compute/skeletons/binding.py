@@ -1,0 +1,100 @@
+"""Weights that bind a mesh to its bones: the bones' own regions, softened over about the thickness of the limb."""
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array, diags_array
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+
+from ..analysis import Analysis
+from ..surface.mesh import Floats, Ints, TriangleMesh
+from .embedding import Skeleton
+
+# Width of the passage from bone to bone in radii of the limb; it is also kept shorter than the bone.
+SOFTNESS = 0.6
+# Two implicit steps of diffusion: one leaves long tails, many cost time.
+STEPS = 2
+# Bones that move a vertex, at the most, as game engines want it, and the least weight that is kept.
+MOST_BONES = 4
+LEAST_WEIGHT = 0.01
+# Triangles flatter than this fraction of the mean area count as if they had it.
+LEAST_AREA = 1e-4
+
+
+def binding_weights(analysis: Analysis, skeleton: Skeleton, *, softness: float = SOFTNESS) -> Floats:
+    """Return how much each bone moves each vertex.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    skeleton : Skeleton
+        Of this analysis.
+    softness : float
+        Width over which weights pass from one bone to the next, in radii of the limb.
+
+    Returns
+    -------
+    (V, J) float64
+        The column of each bone is that of the joint it ends in; the root's is 0. Every row sums to one, with at most
+        four bones.
+    """
+    surface = analysis.surface.mesh
+    used, triangles = np.unique(surface.triangles, return_inverse=True)
+    mesh = TriangleMesh(surface.vertices[used], triangles.reshape(-1, 3))
+    owner = skeleton.bone_of_vertex[used]
+    width = softness * _widths(skeleton)[owner]
+    hard = (owner[:, None] == np.arange(len(skeleton.joints))).astype(np.float64)
+    weights = _few(diffused(mesh, hard, width))
+    return weights[_place_of_input(analysis, used)]
+
+
+def _widths(skeleton: Skeleton) -> Floats:
+    """Return (J,) the radius of each bone's limb, or a third of its length where that is less."""
+    start = np.maximum(skeleton.parent, 0)
+    length = np.linalg.norm(skeleton.joints - skeleton.joints[start], axis=1)
+    return np.minimum(np.minimum(skeleton.radius, skeleton.radius[start]), np.where(length > 0, length / 3, np.inf))
+
+
+def diffused(mesh: TriangleMesh, values: Floats, width: Floats) -> Floats:
+    """Return values (V, n) after heat has spread by a width (V,) that changes over the surface; constants stay."""
+    conductivity = (width**2)[mesh.triangles].mean(axis=1) / STEPS
+    system, mass = _system(mesh, conductivity)
+    factor = splu(system, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0, options={"SymmetricMode": True})
+    for _ in range(STEPS):
+        values = factor.solve(mass[:, None] * values)
+    return values
+
+
+def _system(mesh: TriangleMesh, conductivity: Floats) -> tuple[csc_array, Floats]:
+    """Return mass + stiffness of linear elements (V, V), with a conductivity for each triangle, and the mass (V,)."""
+    corners = mesh.vertices[mesh.triangles]
+    opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
+    area = np.maximum(mesh.areas, LEAST_AREA * mesh.areas.mean())
+    local = np.einsum("tik,tjk->tij", opposite, opposite) * (conductivity / (4 * area))[:, None, None]
+    rows, columns = np.repeat(mesh.triangles, 3, axis=1), np.tile(mesh.triangles, (1, 3))
+    n = len(mesh.vertices)
+    mass: Floats = np.bincount(mesh.triangles.ravel(), np.repeat(area / 3, 3), n).astype(np.float64)
+    stiffness = coo_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n))
+    return csc_array(stiffness.tocsc() + diags_array(mass)), mass
+
+
+def _few(weights: Floats) -> Floats:
+    """Return the largest weights of each row only, as shares of their sum."""
+    if weights.shape[1] > MOST_BONES:
+        dropped = np.argpartition(weights, -MOST_BONES, axis=1)[:, :-MOST_BONES]
+        weights = weights.copy()
+        np.put_along_axis(weights, dropped, 0.0, axis=1)
+    weights = np.where(weights < LEAST_WEIGHT, 0.0, weights)
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def _place_of_input(analysis: Analysis, used: Ints) -> Ints:
+    """Return (V,) for each vertex of the input its place among the used ones, the nearest for what is loose."""
+    vertices = analysis.mesh.vertices
+    place = np.full(len(vertices), -1)
+    place[used] = np.arange(len(used))
+    place = place[analysis.surface.vertex_of_input]
+    loose = np.flatnonzero(place < 0)
+    if len(loose):
+        finite = np.nan_to_num(vertices[loose])
+        place[loose] = cKDTree(vertices[used]).query(finite)[1]
+    return place

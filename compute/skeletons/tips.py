@@ -1,0 +1,62 @@
+"""Tips: the extrema at which limbs end, and how far the bones reach into them."""
+
+import numpy as np
+
+from ..analysis import Analysis
+from ..msc.reeb import ReebGraph
+from ..surface.mesh import Floats
+from .branching import Chain
+from .interior import Interior
+from .layout import BoneLayout
+from .slices import Slices
+
+# How far a tip reaches from the last slice towards the extremum, as long as it stays inside.
+REACHES = (0.85, 0.7, 0.5, 0.3)
+# A middle line that never gets as far out as this fraction of its limb ends in a cavity.
+CAVITY = 0.82
+
+
+def tips_of_parts(analysis: Analysis, graph: ReebGraph, slices: Slices, layout: BoneLayout | None) -> dict[int, int]:
+    """Return the leaves of the graph that are tips, with their parts: of each part the most extreme one."""
+    is_upper = np.zeros(len(graph.vertex), dtype=bool)
+    is_upper[graph.arcs[:, 1]] = True
+    leaves = np.flatnonzero((graph.degree == 1) & (is_upper | analysis.field.minima_are_features))
+    arc_of = {node: arc for arc, ends in enumerate(graph.arcs.tolist()) for node in ends}
+    height = np.abs(analysis.field.values[graph.vertex] - np.median(analysis.field.values))
+    ranked = sorted(leaves.tolist(), key=lambda leaf: -height[leaf])
+    tips: dict[int, int] = {}
+    for leaf in ranked:
+        of_arc = slices.of_arc(arc_of[leaf])
+        if not len(of_arc):
+            continue
+        part = int(slices.part[of_arc[-1] if is_upper[leaf] else of_arc[0]])
+        if layout is None or part in layout.tips or part not in layout.parts:
+            tips.setdefault(part, leaf)
+    return {leaf: part for part, leaf in tips.items()}
+
+
+def hidden_crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) -> int | None:
+    """Return the net triangle farthest from where a limb begins, if its extremum lies in a cavity such as a mouth.
+
+    A middle line that runs the length of a limb comes near its farthest point, even if it curls back.
+    """
+    is_own = np.zeros(slices.count, dtype=bool)
+    is_own[chain.slices] = True
+    own = np.flatnonzero(is_own[slices.of_triangle])
+    line = centres[chain.slices]
+    distance = np.linalg.norm(places[own] - line[0], axis=1)
+    farthest = int(distance.argmax())
+    reach = np.linalg.norm(line - line[0], axis=1).max()
+    return int(own[farthest]) if reach < CAVITY * distance[farthest] else None
+
+
+def widest_slice(chain: Chain, slices: Slices) -> int:
+    """Return the widest slice in the outer half of a chain: behind it the level sets close."""
+    outer = chain.slices[len(chain.slices) // 2 :]
+    return int(outer[slices.girth[outer].argmax()])
+
+
+def reaching(last: Floats, extremum: Floats, interior: Interior) -> Floats:
+    """Return the places (P, 3) of a tip in all poses: as far towards the extremum as it stays inside at rest."""
+    reach = next((reach for reach in REACHES if interior.holds(last[:1] + reach * (extremum - last)[:1])[0]), 0.0)
+    return last + reach * (extremum - last)

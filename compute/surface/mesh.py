@@ -1,0 +1,172 @@
+"""Triangle meshes: the checked input of the engine."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import connected_components
+
+from ..errors import MeshError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Ints32 = NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """The edges of a triangle mesh.
+
+    Attributes
+    ----------
+    vertices : (E, 2) int64
+        End points, the smaller index first.
+    of_triangle : (T, 3) int64
+        Edge k of a triangle joins its corners k and k + 1.
+    n_triangles : (E,) int64
+        How many triangles meet at each edge; 1 on the boundary, more than 2 where non-manifold.
+    """
+
+    vertices: Ints
+    of_triangle: Ints
+    n_triangles: Ints
+
+    @cached_property
+    def neighbours(self) -> Ints:
+        """(P, 2) pairs of triangles that share an edge, every pair of a non-manifold edge's fan in a row."""
+        by_edge = np.argsort(self.of_triangle.ravel(), kind="stable")
+        same = np.flatnonzero(np.diff(self.of_triangle.ravel()[by_edge]) == 0)
+        return np.stack([by_edge[same] // 3, by_edge[same + 1] // 3], axis=1)
+
+    @cached_property
+    def shared(self) -> Ints:
+        """(P,) the edge that each row of ``neighbours`` shares."""
+        by_edge = np.sort(self.of_triangle.ravel(), kind="stable")
+        return by_edge[:-1][np.diff(by_edge) == 0]
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleMesh:
+    """A triangle mesh in space, of any quality: several components, open, flipped, non-manifold.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float
+        Positions in any unit of length.
+    triangles : (T, 3) int
+        Vertex indices, counter-clockwise seen from outside.
+
+    Raises
+    ------
+    MeshError
+        If there are no triangles, an index has no vertex, a used coordinate is not finite or the area is zero.
+    """
+
+    vertices: Floats
+    triangles: Ints
+
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
+        object.__setattr__(self, "vertices", _as_rows(vertices, np.float64, "vertices"))
+        object.__setattr__(self, "triangles", _as_rows(triangles, np.int64, "triangles"))
+        _check(self)
+
+    @cached_property
+    def areas(self) -> Floats:
+        """(T,) area of each triangle, in length²."""
+        # Scaled by the longest side first, so that tiny and huge units neither underflow nor overflow.
+        first, second = self._sides
+        scale = max(np.abs(first).max(), np.abs(second).max(), np.finfo(float).tiny)
+        return 0.5 * np.linalg.norm(np.cross(first / scale, second / scale), axis=1) * scale**2
+
+    @cached_property
+    def edges(self) -> Edges:
+        """The edges, numbered by their end points."""
+        return edges_of(self.triangles, len(self.vertices))
+
+    @cached_property
+    def component_of_triangle(self) -> Ints:
+        """(T,) the component of each triangle, numbered by falling area; a shared vertex connects."""
+        corners = self.triangles
+        n_vertices = len(self.vertices)
+        sides = np.concatenate([corners[:, :2], corners[:, 1:]])
+        graph = coo_array((np.ones(len(sides), dtype=bool), (sides[:, 0], sides[:, 1])), shape=(n_vertices, n_vertices))
+        label = connected_components(graph, directed=False)[1][corners[:, 0]]
+        _, label = np.unique(label, return_inverse=True)
+        by_area = np.argsort(-np.bincount(label, self.areas), kind="stable")
+        return np.argsort(by_area, kind="stable")[label]
+
+    @property
+    def _sides(self) -> tuple[Floats, Floats]:
+        a, b, c = self.vertices[self.triangles].swapaxes(0, 1)
+        return b - a, c - a
+
+
+def edges_of(triangles: Ints, n_vertices: int) -> Edges:
+    """Return the edges of triangles over ``n_vertices`` vertices."""
+    order, ends, is_new = sorted_sides(triangles, n_vertices)
+    first = np.flatnonzero(is_new)
+    edge = np.empty(len(order), dtype=np.int64)
+    edge[order] = np.cumsum(is_new) - 1
+    return Edges(ends[:, first].T.astype(np.int64), edge.reshape(-1, 3), np.diff(np.append(first, len(order))))
+
+
+def sorted_sides(triangles: Ints, n_vertices: int) -> tuple[Ints32, Ints32, Bools]:
+    """Sort the sides of all triangles by their lower, then by their higher end, so that an edge is a run of sides.
+
+    Returns
+    -------
+    order : (3 T,) int32
+        Side 3 t + k joins the corners k and k + 1 of triangle t.
+    ends : (2, 3 T) int32
+        Lower and higher end of the sides in that order.
+    is_new : (3 T,) bool
+        Where an edge begins.
+    """
+    tails = triangles.astype(np.int32)
+    heads = np.roll(tails, -1, axis=1)
+    low, high = np.minimum(tails, heads).ravel(), np.maximum(tails, heads).ravel()
+    order = _counting_order(high, n_vertices)
+    order = order[_counting_order(low[order], n_vertices)]
+    low, high = low[order], high[order]
+    is_new = np.ones(len(order), dtype=bool)
+    is_new[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
+    return order, np.stack([low, high]), is_new
+
+
+def _counting_order(keys: Ints32, n_keys: int) -> Ints32:
+    """Return the stable order of keys below ``n_keys``; a sparse transposition is a counting sort, so linear."""
+    rows = np.arange(len(keys) + 1, dtype=np.int32)
+    one_a_row = csr_array((np.empty(len(keys), dtype=np.int8), keys, rows), shape=(len(keys), n_keys))
+    return one_a_row.tocsc().indices
+
+
+def _as_rows(values: ArrayLike, dtype: type, name: str) -> NDArray[Any]:
+    try:
+        rows: NDArray[Any] = np.ascontiguousarray(np.asarray(values).astype(dtype, casting="same_kind"))
+    except (TypeError, ValueError) as error:
+        raise MeshError(f"The {name} must be an array of numbers of shape (n, 3).") from error
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise MeshError(f"The {name} must have the shape (n, 3), not {rows.shape}.")
+    return rows
+
+
+def _check(mesh: TriangleMesh) -> None:
+    if len(mesh.triangles) == 0:
+        raise MeshError("The mesh has no faces; there is nothing to analyze.")
+    if mesh.triangles.min() < 0 or mesh.triangles.max() >= len(mesh.vertices):
+        raise MeshError("A triangle refers to a vertex that does not exist.")
+    used = mesh.vertices[mesh.triangles]
+    if not np.isfinite(used).all():
+        raise MeshError("A vertex has a coordinate that is not a finite number; repair or delete it.")
+    extent = np.ptp(used.reshape(-1, 3), axis=0).max()
+    if not np.isfinite(extent) or not mesh.areas.sum() > 0:
+        raise MeshError("The faces of the mesh have no area; check the scale of the object and merged vertices.")
+
+
+def sum_by(index: Ints, weight: Floats, size: int = 0) -> Floats:
+    """Return the sum of the weights at each index, of at least the given size."""
+    return np.asarray(np.bincount(index, weight, size), dtype=np.float64)

@@ -1,0 +1,137 @@
+"""Operator: an armature for the parts that the active mesh shows, and the mesh bound to it."""
+
+from collections.abc import Callable
+
+import bpy
+import numpy as np
+
+from ..mesh_state import part_table
+from ..messages.sentences import tell
+from ..messages.user_errors import Refusal
+from ..parts.analyze import Ticket
+from .bone_names import name_bones
+from .skeleton_options import ArmatureOptions
+from .skeleton_request import Laid, SkeletonRequest, part_names
+
+# Length of the root bone in radii of the body around it.
+ROOT_LENGTH = 0.6
+# A bone steeper than this is rolled by the front, others by the top.
+STEEP = 0.9
+UP, FRONT = (0.0, 0.0, 1.0), (0.0, -1.0, 0.0)
+
+ALREADY_BOUND = (
+    "The object has an armature already; remove its Armature modifier and the vertex groups of its bones first, "
+    "or choose None as weights for an armature beside it."
+)
+NOT_BOUND = "Blender found no automatic weights for this mesh; undo, and take the weights from the parts."
+
+
+class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.Operator):
+    """Builds an armature for the parts of the active mesh and binds the mesh to it."""
+
+    bl_idname = "eigenparts.create_armature"
+    bl_description = (
+        "Build an armature for the parts of the active mesh and bind the mesh to it; "
+        "other selected meshes with the same faces show where its limbs bend"
+    )
+    bl_label = "Create Armature"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
+        if self.weights != "NONE" and any(modifier.type == "ARMATURE" for modifier in context.object.modifiers):
+            raise Refusal(ALREADY_BOUND)
+        return super().begin(context)
+
+    def needs_weights(self) -> bool:
+        return self.weights == "PARTS"
+
+    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: Laid) -> None:
+        skeleton = laid.skeleton
+        taken = {group.name for group in obj.vertex_groups}
+        names = name_bones(skeleton.parent, skeleton.part, part_names(obj.data, skeleton), laid.pairing, taken)
+        armature = add_armature(context, obj, laid, names)
+        if self.weights == "PARTS":
+            bind(obj, armature, names, laid.weights)
+        elif self.weights == "AUTOMATIC":
+            bind_automatically(context, obj, armature)
+            if not _is_bound(obj, names):
+                tell(self, "WARNING", NOT_BOUND)
+        tell(self, "INFO", f"{len(names)} bones in {armature.name}.")
+
+
+def add_armature(context: bpy.types.Context, obj: bpy.types.Object, laid: Laid, names: list[str]) -> bpy.types.Object:
+    """Add the armature of a skeleton where an object is, and make it the active one."""
+    armature = bpy.data.objects.new(f"{obj.name} rig", bpy.data.armatures.new(f"{obj.name} rig"))
+    for collection in obj.users_collection:
+        collection.objects.link(armature)
+    armature.parent, armature.parent_type, armature.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
+    armature.matrix_parent_inverse = obj.matrix_parent_inverse
+    armature.matrix_basis = obj.matrix_basis
+    armature.show_in_front = True
+    context.view_layer.objects.active = armature
+    armature.select_set(True)
+    bpy.ops.object.mode_set(mode="EDIT")
+    _add_bones(armature.data.edit_bones, laid, names)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    _colour_bones(armature.data, obj.data, laid, names)
+    return armature
+
+
+def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], weights: np.ndarray) -> None:
+    """Give an object the weights of its bones as vertex groups, and let the armature move it."""
+    for name, column in zip(names[1:], weights.T[1:], strict=True):
+        group = obj.vertex_groups.new(name=name)
+        group.add(np.flatnonzero(column == 1).tolist(), 1.0, "REPLACE")
+        # Blender takes one weight for any number of vertices, so the few between two bones go one by one.
+        for vertex in np.flatnonzero((column > 0) & (column < 1)).tolist():
+            group.add([vertex], column[vertex], "REPLACE")
+    obj.parent, obj.parent_type, obj.parent_bone = armature, "OBJECT", ""
+    obj.matrix_parent_inverse = obj.matrix_basis.inverted_safe()
+    modifier = obj.modifiers.new("Armature", "ARMATURE")
+    modifier.object = armature
+    # What refines the mesh is to refine the posed one; only a mirrored half must become a whole first.
+    n_mirrors = next(i for i, other in enumerate(obj.modifiers) if other.type != "MIRROR")
+    obj.modifiers.move(len(obj.modifiers) - 1, n_mirrors)
+
+
+def bind_automatically(context: bpy.types.Context, obj: bpy.types.Object, armature: bpy.types.Object) -> None:
+    """Let Blender find the weights."""
+    chosen = {"object": armature, "active_object": armature, "selected_editable_objects": [obj, armature]}
+    with context.temp_override(**chosen, selected_objects=[obj, armature]):
+        bpy.ops.object.parent_set(type="ARMATURE_AUTO", keep_transform=True)
+
+
+def _is_bound(obj: bpy.types.Object, names: list[str]) -> bool:
+    own = {group.index for group in obj.vertex_groups if group.name in names}
+    return any(element.group in own for vertex in obj.data.vertices for element in vertex.groups)
+
+
+def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: Laid, names: list[str]) -> None:
+    skeleton = laid.skeleton
+    root = edit_bones.new(names[0])
+    root.head = skeleton.joints[0]
+    root.tail = skeleton.joints[0] + ROOT_LENGTH * skeleton.radius[0] * np.array(UP)
+    root.use_deform = False
+    for joint in range(1, len(names)):
+        bone = edit_bones.new(names[joint])
+        start = int(skeleton.parent[joint])
+        bone.head, bone.tail = skeleton.joints[start], skeleton.joints[joint]
+        bone.parent = edit_bones[names[start]]
+        bone.use_connect = start > 0
+        direction = skeleton.joints[joint] - skeleton.joints[start]
+        is_steep = abs(direction[2]) > STEEP * np.linalg.norm(direction)
+        bone.align_roll(FRONT if is_steep else UP)
+
+
+def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: Laid, names: list[str]) -> None:
+    """Give bones the colours of their parts."""
+    linear = part_table.colours(mesh, int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    for name, colour in zip(names, srgb.tolist(), strict=True):
+        bone = armature.bones[name]
+        bone.color.palette = "CUSTOM"
+        bone.color.custom.normal = colour
+        bone.color.custom.select = bone.color.custom.active = [(1 + 2 * component) / 3 for component in colour]
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_create_armature,))

@@ -1,0 +1,218 @@
+"""What operators have in common that lay bones into the active mesh: the analysis, its skeleton, left and right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+import bpy
+import numpy as np
+
+from ... import compute
+from ..jobs import recent_analyses
+from ..jobs.recent_results import Recent, key_of
+from ..mesh_data import mesh_arrays
+from ..mesh_state import bone_layout, part_sides, part_table, state
+from ..messages.sentences import tell
+from ..messages.user_errors import Refusal
+from ..outputs.part_writer import read_labels
+from ..outputs.rollback import all_or_nothing, bound_or_not, nothing_left_behind
+from ..parts.analysis_request import AnalysisRequest
+from ..parts.analyze import Ticket, find_mesh
+from .skeleton_options import ArmatureOptions, SkeletonOptions
+
+# How many shapes are remembered by their symmetry.
+RECENT_SYMMETRIES = 8
+_recent_partners = Recent(RECENT_SYMMETRIES)
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A skeleton with all that its bones are called after.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+    weights : (V, J) array or None
+        How much each bone moves each vertex, if that was wanted.
+    pairing : dict of int to (int, int)
+        For each part that has a side, the part both sides are called after and +1 for left, -1 for right.
+    """
+
+    skeleton: compute.Skeleton
+    weights: np.ndarray | None
+    pairing: dict[int, tuple[int, int]]
+
+
+@dataclass(frozen=True, eq=False)
+class BoneWish:
+    """What is known of the parts, and what kind of skeleton is wanted.
+
+    Attributes
+    ----------
+    labels : (F,) int32
+        Part of each polygon.
+    level : int
+        Which features have bones.
+    n_pieces : int
+        Bones in a long straight limb.
+    poses : tuple of (V, 3) arrays
+        The same vertices elsewhere.
+    pairing : dict
+        Sides that are known from the mesh that this one is registered to; empty if there are none.
+    needs_weights : bool
+    layout : BoneLayout or None
+        The bones of the mesh that this one is registered to.
+    """
+
+    labels: np.ndarray
+    level: int
+    n_pieces: int
+    poses: tuple[np.ndarray, ...] = ()
+    pairing: dict[int, tuple[int, int]] = field(default_factory=dict)
+    needs_weights: bool = False
+    layout: compute.BoneLayout | None = None
+
+
+class SkeletonRequest(SkeletonOptions, AnalysisRequest):
+    """Lays a skeleton into the parts that the active mesh shows."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and state.is_analyzed_for(cls, context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """From the window: what the call leaves open is taken from the panel."""
+        for name in self._options():
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(context.scene.eigenparts_skeleton, name))
+        return super().invoke(context, event)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Show what can be changed afterwards: with other options of the analysis all would have to be done again."""
+        self.layout.use_property_split = True
+        for name in self._options():
+            self.layout.prop(self, name)
+
+    def _options(self) -> list[str]:
+        names = (*ArmatureOptions.__annotations__, *SkeletonOptions.__annotations__)
+        return [name for name in names if name in self.properties.bl_rna.properties]
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
+        obj = context.object
+        arrays, options = self.read(context)
+        labels = read_labels(obj.data)
+        wish = BoneWish(
+            labels,
+            state.summarize(obj.data).level,
+            self.bones_in_limbs,
+            _other_poses(context),
+            part_sides.of_reference(obj.data),
+            self.needs_weights(),
+            bone_layout.of_reference(obj.data),
+        )
+        return partial(lay_bones, arrays, options, wish), Ticket(
+            obj.data.session_uid, mesh_arrays.fingerprint(obj.data)
+        )
+
+    def needs_weights(self) -> bool:
+        """Whether the mesh is to be bound to the bones with weights of ours."""
+        return False
+
+    def finish(self, context: bpy.types.Context, ticket: Ticket, laid: Laid) -> set[str]:
+        mesh = find_mesh(ticket)
+        obj = _object_of(context, mesh)
+        with all_or_nothing(mesh), nothing_left_behind(context), bound_or_not(obj):
+            part_sides.remember(mesh, laid.pairing)
+            bone_layout.remember(mesh, laid.skeleton.layout)
+            self.build(context, obj, laid)
+        for warning in (*laid.skeleton.warnings, *_warnings_of_reference(mesh)):
+            tell(self, "WARNING", warning)
+        return {"FINISHED"}
+
+
+def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
+    """Return what to tell of a registered mesh whose reference has no bones that it could be given."""
+    reference = bone_layout.reference_of(mesh)
+    # An object that was deleted lives on where others refer to it, but nothing can be created for it.
+    if reference is None or not reference.users_scene or bone_layout.read(reference.data) is not None:
+        return []
+    return [bone_layout.NO_BONES.format(reference.name)]
+
+
+def _object_of(context: bpy.types.Context, mesh: bpy.types.Mesh) -> bpy.types.Object:
+    """Return an object with the mesh, the active one if it still is that."""
+    users = [obj for obj in context.view_layer.objects if obj.data == mesh]
+    if not users:
+        raise Refusal("The object is not in the view layer; it was deleted, excluded or belongs to another scene.")
+    return context.object if context.object in users else users[0]
+
+
+def lay_bones(
+    arrays: mesh_arrays.MeshArrays, options: dict[str, Any], wish: BoneWish, progress: Callable[[float, str], None]
+) -> Laid:
+    """Run the engine; knows nothing of Blender, so any thread may do it."""
+
+    def of_analysis(fraction: float, text: str) -> None:
+        progress(0.6 * fraction, text)
+
+    def of_symmetry(fraction: float, text: str) -> None:
+        progress(0.6 + 0.3 * fraction, text)
+
+    analysis = recent_analyses.recall(arrays, options, of_analysis)
+    labels = wish.labels[arrays.polygon_of_triangle]
+    key = key_of([recent_analyses.key_of_analysis(arrays, options), labels])
+    partner = _recall_partner(key, partial(compute.mirror_parts, analysis, labels, progress=of_symmetry))
+    progress(0.9, "Laying bones")
+    level = min(wish.level, analysis.hierarchy.n_levels - 1)
+    skeleton = compute.skeleton(
+        analysis,
+        level=level,
+        labels=labels,
+        poses=wish.poses,
+        n_pieces=wish.n_pieces,
+        partner=partner,
+        layout=wish.layout,
+    )
+    progress(0.95, "Binding the mesh")
+    weights = compute.binding_weights(analysis, skeleton) if wish.needs_weights else None
+    return Laid(skeleton, weights, wish.pairing or _pairing(skeleton, partner))
+
+
+def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarray | None:
+    """Return which parts mirror which, as it was found before if that is known: a bent pose takes seconds."""
+    kept = _recent_partners.get(key)
+    if kept is None:
+        kept = (find(),)
+        _recent_partners.put(key, kept, 1)
+    return kept[0]
+
+
+def part_names(mesh: bpy.types.Mesh, skeleton: compute.Skeleton) -> dict[int, str]:
+    """Return the names of the parts that bones lie in."""
+    return {part: part_table.name_of(mesh, part) for part in np.unique(skeleton.part).tolist()}
+
+
+def _pairing(skeleton: compute.Skeleton, partner: np.ndarray | None) -> dict[int, tuple[int, int]]:
+    if partner is None:
+        return {}
+    side = compute.sides(skeleton, partner)
+    return {part: (min(part, int(partner[part])), int(side[part])) for part in np.flatnonzero(side).tolist()}
+
+
+def _other_poses(context: bpy.types.Context) -> tuple[np.ndarray, ...]:
+    """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
+    others = [obj for obj in context.selected_objects if obj is not context.object and obj.type == "MESH"]
+    mesh = context.object.data
+    meshes = [obj.data for obj in others if not obj.data.is_editmode and _share_faces(obj.data, mesh)]
+    return tuple(mesh_arrays.read_mesh(other).vertices for other in meshes)
+
+
+def _share_faces(first: bpy.types.Mesh, second: bpy.types.Mesh) -> bool:
+    # Which diagonal cuts a quad depends on the pose, so triangles are not compared.
+    return len(first.vertices) == len(second.vertices) and all(
+        np.array_equal(read(first), read(second))
+        for read in (mesh_arrays.vertex_of_corner, mesh_arrays.polygon_of_triangle)
+    )

@@ -1,0 +1,82 @@
+"""Operator: move the border of a part along the field."""
+
+from dataclasses import replace
+
+import bpy
+from bpy.props import FloatProperty, IntProperty
+
+from ... import compute
+from ..mesh_state import corrected_analysis
+from ..messages.user_errors import Refusal
+from ..outputs import part_writer
+from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
+
+
+class EIGENPARTS_OT_move_border(CorrectsParts, bpy.types.Operator):
+    """Move the border of a part along the field, outward or inward"""
+
+    bl_idname = "eigenparts.move_border"
+    bl_label = "Move Border"
+
+    part: IntProperty(
+        name="Part", description="Number of the part whose border is moved; the active one if not given", min=0
+    )
+    offset: FloatProperty(
+        name="Offset",
+        description="How far the border is moved from where it was found, as a fraction of the field's range; the part"
+        " grows with it",
+        min=-1,
+        max=1,
+        precision=3,
+        step=0.5,
+    )
+
+    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+        """Begin where the border lies now."""
+        super().fill_in(mesh)
+        if not self.properties.is_property_set("offset"):
+            self.offset = offset_of(corrected_analysis.items_of(mesh), self.part)
+
+    def correct(self, mesh: bpy.types.Mesh) -> None:
+        move_border(mesh, self.part, self.offset)
+
+
+def move_border(mesh: bpy.types.Mesh, part: int, offset: float) -> None:
+    """Move the border of a part to a distance from where it was found, 0 to put it back."""
+    if part == 0:
+        raise Refusal(BODY_IS_WHAT_IS_LEFT)
+    refuse_absent(mesh, part)
+    items = corrected_analysis.items_of(mesh)
+    place = place_of_border(items, part)
+    if place is not None and items[place].kind == compute.SPLIT:
+        moved = replace(items[place], value=-offset)
+        part_writer.correct_mesh(mesh, (*items[:place], moved, *items[place + 1 :]), changed=place)
+        return
+    others = items if place is None else items[:place] + items[place + 1 :]
+    if offset == 0:
+        part_writer.correct_mesh(mesh, others)
+        return
+    item = new_item(mesh, compute.MOVE, part, value=offset)
+    corrected_analysis.refuse_without_border(mesh, item)
+    place = len(others) if place is None else place
+    part_writer.correct_mesh(mesh, (*others[:place], item, *others[place:]), changed=place)
+
+
+def place_of_border(items: tuple["compute.Correction", ...], part: int) -> int | None:
+    """Return the place of the correction that says where the border of a part lies, if there is one."""
+    for place, item in enumerate(items):
+        is_split_off = item.kind == compute.SPLIT and item.other == part
+        if is_split_off or (item.kind == compute.MOVE and item.part == part):
+            return place
+    return None
+
+
+def offset_of(items: tuple["compute.Correction", ...], part: int) -> float:
+    """Return how far the border of a part is moved; for a part that was split off, from the border of the whole."""
+    place = place_of_border(items, part)
+    if place is None:
+        return 0.0
+    return -items[place].value if items[place].kind == compute.SPLIT else items[place].value
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_move_border,))

@@ -1,0 +1,5 @@
+"""Long work beside the window, and what was computed last. Imports messages, mesh_data."""
+
+import bpy
+
+register, unregister = bpy.utils.register_submodule_factory(__package__, ["job_status", "cancel"])

@@ -1,0 +1,125 @@
+"""Run an operator's long work in the background of the window: progress, ESC, one job at a time."""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from ..messages import unexpected_errors
+from ..messages.sentences import in_language, tell
+from ..messages.unexpected_errors import errors_told
+from ..messages.user_errors import refusals_told
+from .job import Job
+from .threads import use_preferred_threads
+
+# Seconds between looks at the job; redrawing more often only takes time from it.
+INTERVAL = 0.1
+
+_running: Job | None = None
+
+
+class BackgroundOperator:
+    """What long operators have in common; they give ``begin`` and ``finish``.
+
+    ``begin(context)`` reads what is needed and returns work that never touches Blender and a ticket for ``finish``;
+    ``finish(context, ticket, result)`` writes the result. Scripts wait for the work; the window runs it in a thread.
+    """
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            work, ticket = self.begin(context)
+            return self.finish(context, ticket, work(_silent))
+        return {"CANCELLED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if bpy.app.background:
+            return self.execute(context)
+        unexpected_errors.forget()
+        with errors_told(self):
+            work, self._ticket = self.begin(context)
+            self._job = _start(work)
+            self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
+            context.window_manager.progress_begin(0, 100)
+            context.window_manager.modal_handler_add(self)
+            return {"RUNNING_MODAL"}
+        return {"CANCELLED"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if event.type == "ESC" and event.value == "PRESS":
+            self._job.cancel()
+        if self._job is not _running or self._job.is_cancelled:
+            self._leave(context)
+            tell(self, "INFO", "Cancelled; nothing was changed.")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if not self._job.is_done:
+            _show_progress(context, type(self).bl_idname, self._job)
+            return {"PASS_THROUGH"}
+        self._leave(context)
+        with errors_told(self):
+            return self.finish(context, self._ticket, self._job.result())
+        return {"CANCELLED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends the operator, such as when a file is loaded."""
+        self._leave(context)
+
+    def _leave(self, context: bpy.types.Context) -> None:
+        stop_running_job()
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
+        context.window_manager.eigenparts.is_running = False
+        _redraw_sidebars(context)
+
+
+def is_running() -> bool:
+    """Whether a job is under way."""
+    return _running is not None
+
+
+def can_start_job(operator: type[bpy.types.Operator]) -> bool:
+    """Whether no job is under way; if one is, the tooltip says so."""
+    if is_running():
+        operator.poll_message_set("Another job is running; wait for it or cancel it.")
+    return not is_running()
+
+
+def stop_running_job() -> None:
+    """Disown the running job, if there is one; its operator notices at the next tick."""
+    global _running
+    if _running is not None:
+        _running.cancel()
+    _running = None
+
+
+def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
+    global _running
+    use_preferred_threads()
+    _running = Job(work)
+    return _running
+
+
+def _show_progress(context: bpy.types.Context, operator: str, job: Job) -> None:
+    status = context.window_manager.eigenparts
+    text = in_language(job.text)
+    shown = in_language(f"Eigenparts: {text} ({job.fraction:.0%}), ESC to cancel")
+    if status.is_running and status.shown == shown:
+        return
+    status.is_running, status.job = True, operator
+    status.fraction, status.text, status.shown = job.fraction, text, shown
+    context.window_manager.progress_update(100 * job.fraction)
+    context.workspace.status_text_set(shown)
+    _redraw_sidebars(context)
+
+
+def _redraw_sidebars(context: bpy.types.Context) -> None:
+    for area in context.screen.areas:
+        for region in area.regions:
+            if area.type == "VIEW_3D" and region.type == "UI":
+                region.tag_redraw()
+
+
+def _silent(fraction: float, text: str) -> None:
+    """Scripts wait without being told."""

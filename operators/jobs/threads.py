@@ -1,0 +1,53 @@
+"""How many processor cores the matrix libraries of numpy and scipy use."""
+
+import ctypes
+from collections.abc import Callable, Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import bpy
+
+PACKAGE = __package__.rsplit(".", 2)[0]
+
+# Where their wheels keep the library, beside the package and inside it, and what the setting is called there.
+FOLDERS = ("../{package}.libs", ".dylibs")
+SETTINGS = (
+    *("scipy_openblas_set_num_threads", "scipy_openblas_set_num_threads64_"),
+    *("openblas_set_num_threads", "openblas_set_num_threads64_"),
+)
+
+
+def use_threads(n_threads: int) -> int:
+    """Let the matrix libraries use so many cores; return how many libraries heard it."""
+    setters = list(_setters())
+    for setter in setters:
+        setter(n_threads)
+    return len(setters)
+
+
+def user_preferences() -> bpy.types.AddonPreferences | None:
+    """Return what the user prefers; None where Eigenparts is not installed as an extension, such as in a script."""
+    addon = bpy.context.preferences.addons.get(PACKAGE)
+    return addon.preferences if addon is not None else None
+
+
+def use_preferred_threads() -> None:
+    """Let the matrix libraries use as many cores as the user prefers."""
+    preferences = user_preferences()
+    if preferences is not None and preferences.n_threads:
+        use_threads(preferences.n_threads)
+
+
+def _setters() -> Iterator[Callable[[int], None]]:
+    for library in _libraries():
+        yield from (getattr(library, name) for name in SETTINGS if hasattr(library, name))
+
+
+def _libraries() -> Iterator[ctypes.CDLL]:
+    """Yield the OpenBLAS of each package; one that is loaded already is not loaded again."""
+    for package in ("numpy", "scipy"):
+        spec = find_spec(package)
+        home = Path(spec.origin).parent if spec and spec.origin else None
+        for folder in FOLDERS if home else ():
+            for path in sorted((home / folder.format(package=package)).glob("*openblas*")):
+                yield ctypes.CDLL(str(path.resolve()))

@@ -1,0 +1,67 @@
+"""Whether all indices of a stored analysis lead somewhere, so that nothing read from a file can do harm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ... import compute
+
+
+def is_sound(hierarchy: compute.Hierarchy, branches: tuple[compute.Branches, ...]) -> bool:
+    """Whether trees and branches fit each other."""
+    n_features = hierarchy.n_levels - 1
+    if len({pieces.arc.size for pieces in branches}) != 1 or hierarchy.pairs.ndim != 2:
+        return False
+    columns = (hierarchy.pairs[:, :1].ravel(), hierarchy.persistence, hierarchy.is_maximum)
+    return all(column.shape == (n_features,) for column in columns) and all(
+        _is_sound_tree(tree, n_features) and are_sound_branches(pieces, len(tree.parent))
+        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
+    )
+
+
+def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
+    n_arcs = tree.parent.size
+    measures = (tree.height, tree.closing_length, tree.longest, tree.roundness)
+    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, *measures)
+    if not all(column.shape == (n_arcs,) for column in columns) or any((column < 0).any() for column in measures):
+        return False
+    is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
+    return (
+        tree.n_features == n_features
+        and 0 <= tree.n_roots <= 2 * n_arcs
+        and bool(is_later.all())
+        and lie_within(tree.parent, -1, n_arcs)
+        and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
+        and _are_sound_shells(tree)
+    )
+
+
+def _are_sound_shells(tree: compute.ArcTree) -> bool:
+    """Whether whole shells stand under the root, with numbers of their own that follow those of the roots."""
+    is_shell, root = tree.is_shell, len(tree.parent) - 1
+    own = tree.n_roots + 1 + np.arange(-int(is_shell.sum()), 0)
+    return (
+        np.array_equal(tree.part[is_shell], own)
+        and bool((tree.parent[is_shell] == root).all())
+        and not np.isin(tree.part[~is_shell], own).any()
+    )
+
+
+def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
+    """Whether the tables of branches fit each other and a tree."""
+    n_branches = branches.arc.size
+    return (
+        branches.area.shape == branches.n_faces.shape == branches.arc.shape == (n_branches,)
+        and branches.borders.shape == (branches.border_length.size, 2)
+        and branches.border_length.ndim == 1
+        and lie_within(branches.n_faces, 0, len(branches.of_face) + 1)
+        and lie_within(branches.area, 0, np.inf)
+        and lie_within(branches.arc, 0, n_arcs)
+        and lie_within(branches.borders, 0, n_branches)
+        and lie_within(branches.of_face, 0, n_branches)
+    )
+
+
+def lie_within(indices: np.ndarray, start: int, stop: int) -> bool:
+    """Whether all indices are at least ``start`` and below ``stop``."""
+    return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)

@@ -1,0 +1,5 @@
+"""What parts are written to: one file an output, and the writer of them all. Imports the rooms of meshes."""
+
+import bpy
+
+register, unregister = bpy.utils.register_submodule_factory(__package__, ["recolouring"])

@@ -1,0 +1,20 @@
+"""Output: the field itself, a decimal number on each vertex."""
+
+import bpy
+
+from ..mesh_data.mesh_arrays import OwnAttribute, remove_own_attributes, write_attribute
+from ..mesh_state.state import vertex_heights
+from .division import Division
+
+FIELD = OwnAttribute("eigenparts_field", "FLOAT", "POINT")
+ATTRIBUTES = (FIELD,)
+
+
+def write(mesh: bpy.types.Mesh, division: Division) -> None:
+    """Write the field that the parts come from."""
+    write_attribute(mesh, FIELD, vertex_heights(mesh))
+
+
+def remove(mesh: bpy.types.Mesh) -> None:
+    """Take the output back."""
+    remove_own_attributes(mesh, [FIELD.name])

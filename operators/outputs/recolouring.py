@@ -1,0 +1,47 @@
+"""Show the colours that the user prefers on all meshes that have parts, as soon as they change."""
+
+from contextlib import suppress
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..mesh_state import state
+from ..messages.user_errors import Refusal, is_linked
+from . import part_writer
+
+_is_changed = False
+
+
+def show_changed_colours() -> None:
+    """Recolour what is divided, now and whenever undo brings meshes back that were coloured before."""
+    global _is_changed
+    _is_changed = True
+    recolour_meshes()
+
+
+def recolour_meshes() -> None:
+    """Give the parts of all meshes the colours they have by now; what cannot be written to keeps its own."""
+    for mesh in bpy.data.meshes:
+        if state.is_analyzed(mesh) and not mesh.is_editmode and not is_linked(mesh):
+            with suppress(Refusal):
+                part_writer.recolour(mesh)
+
+
+@persistent
+def _follow_undo(*_: object) -> None:
+    if _is_changed:
+        recolour_meshes()
+
+
+def register() -> None:
+    """Begin to listen to undo and redo."""
+    bpy.app.handlers.undo_post.append(_follow_undo)
+    bpy.app.handlers.redo_post.append(_follow_undo)
+
+
+def unregister() -> None:
+    """Listen no more."""
+    global _is_changed
+    _is_changed = False
+    bpy.app.handlers.undo_post.remove(_follow_undo)
+    bpy.app.handlers.redo_post.remove(_follow_undo)

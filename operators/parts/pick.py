@@ -1,0 +1,170 @@
+"""Operator: make a part active by clicking it in the view."""
+
+import bpy
+from bpy.props import FloatVectorProperty
+from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+from mathutils import Vector
+
+from ..mesh_state import part_table
+from ..mesh_state.state import is_analyzed
+from ..messages.sentences import in_language
+from ..messages.user_errors import Refusal, refusals_told
+from ..outputs.part_writer import PART
+
+HOW = "Click a part; ESC or right click when done."
+NOTHING = "There is no surface here."
+NO_PARTS = "This object has no parts; analyze it first."
+# Where a ray that goes on behind a surface begins, as a fraction of the way to it, and how often it does at most.
+BEHIND, MOST_PASSED = 1e-5, 1000
+
+
+class EIGENPARTS_OT_pick_part(bpy.types.Operator):
+    """Click parts in the view to make them active in the list, until ESC or right click"""
+
+    bl_idname = "eigenparts.pick_part"
+    bl_label = "Pick Part"
+    bl_options = {"UNDO"}
+
+    location: FloatVectorProperty(
+        name="Location", description="Where the ray to the surface begins, in the world", subtype="XYZ"
+    )
+    direction: FloatVectorProperty(
+        name="Direction", description="Where the ray goes, in the world", subtype="XYZ", default=(0, 0, -1)
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Parts are picked in object mode.")
+        return context.mode == "OBJECT"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            pick(context, Vector(self.location), Vector(self.direction))
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        status = context.window_manager.eigenparts
+        # The button is pressed again while it is on: the one that is on leaves at its next event.
+        status.is_picking = not status.is_picking
+        if not status.is_picking:
+            return {"CANCELLED"}
+        self._has_picked = False
+        _show_in_headers(HOW)
+        context.window.cursor_modal_set("EYEDROPPER")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        is_over = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
+        if is_over or context.mode != "OBJECT" or not context.window_manager.eigenparts.is_picking:
+            self.cancel(context)
+            return {"FINISHED"} if self._has_picked else {"CANCELLED"}
+        view = view_under(context.screen, event.mouse_x, event.mouse_y)
+        if view is None or event.type != "LEFTMOUSE":
+            return {"PASS_THROUGH"}
+        if event.value == "PRESS":
+            self._pick_under(context, *view, event)
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Give the view back; Blender too ends the operator, such as when a file is loaded."""
+        context.window_manager.eigenparts.is_picking = False
+        _show_in_headers(None)
+        context.window.cursor_modal_restore()
+
+    def _pick_under(
+        self, context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region, event: bpy.types.Event
+    ) -> None:
+        place = event.mouse_x - region.x, event.mouse_y - region.y
+        ray = (action(region, region.data, place) for action in (region_2d_to_origin_3d, region_2d_to_vector_3d))
+        try:
+            name = pick(context, *ray, area.spaces.active)
+        except Refusal as refusal:
+            _show_in_headers(f"{refusal} {HOW}")
+        else:
+            self._has_picked = True
+            _show_in_headers(f"{name}. {HOW}")
+
+
+def pick(
+    context: bpy.types.Context, origin: Vector, direction: Vector, view: bpy.types.SpaceView3D | None = None
+) -> str:
+    """Make the part that a ray meets first active in the list, its object the active one, and return its name.
+
+    Parameters
+    ----------
+    origin, direction : Vector
+        In the world.
+    view : SpaceView3D, optional
+        What cannot be seen in it is passed through.
+
+    Raises
+    ------
+    Refusal
+        If the ray meets nothing, or what it meets has no parts; nothing is changed then.
+    """
+    obj, face = _first_hit(context, origin, direction, view)
+    part = _part_of_face(context, obj, face)
+    settings = obj.data.eigenparts
+    parts = [row.part for row in settings.rows]
+    if part not in parts:
+        raise Refusal(NO_PARTS)
+    context.view_layer.objects.active = obj
+    obj.select_set(True)
+    settings.active_row = parts.index(part)
+    return part_table.name_of(obj.data, part)
+
+
+def view_under(screen: bpy.types.Screen, x: int, y: int) -> tuple[bpy.types.Area, bpy.types.Region] | None:
+    """Return the 3D view under a place in the window, None where something else is or lies over it."""
+    for area in screen.areas:
+        under = [
+            region
+            for region in area.regions
+            if region.x <= x < region.x + region.width and region.y <= y < region.y + region.height
+        ]
+        if area.type == "VIEW_3D" and len(under) == 1 and under[0].type == "WINDOW":
+            return area, under[0]
+    return None
+
+
+def _show_in_headers(text: str | None) -> None:
+    """Show a text above all 3D views, or what is there otherwise; views come and go while parts are picked."""
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                area.header_text_set(text and in_language(text))
+
+
+def _first_hit(
+    context: bpy.types.Context, origin: Vector, direction: Vector, view: bpy.types.SpaceView3D | None
+) -> tuple[bpy.types.Object, int]:
+    """Return the first object that a ray meets, and the face of it as its modifiers leave it."""
+    depsgraph = context.evaluated_depsgraph_get()
+    for _ in range(MOST_PASSED):
+        found, place, _, face, obj, _ = context.scene.ray_cast(depsgraph, origin, direction)
+        if not found:
+            break
+        if view is None or obj.visible_in_viewport_get(view):
+            return obj, face
+        origin = place + BEHIND * (place - origin)
+    raise Refusal(NOTHING)
+
+
+def _part_of_face(context: bpy.types.Context, obj: bpy.types.Object, face: int) -> int:
+    """Return the part of a face of an object as its modifiers leave it: they carry the map of the parts along."""
+    if obj.type != "MESH" or not is_analyzed(obj.data):
+        raise Refusal(NO_PARTS)
+    evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
+    try:
+        labels = evaluated.to_mesh().attributes.get(PART.name)
+        if labels is None or not PART.is_kind_of(labels) or face >= len(labels.data):
+            raise Refusal("The modifiers leave no parts on the surface; turn them off in the view to pick one.")
+        return labels.data[face].value
+    finally:
+        evaluated.to_mesh_clear()
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_pick_part,))

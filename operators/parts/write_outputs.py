@@ -1,0 +1,51 @@
+"""Operator: choose what the parts of a mesh are written to."""
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty
+
+from ..mesh_state import state
+from ..messages.user_errors import can_use_active_mesh, refusals_told
+from ..outputs import output_registry, part_writer
+
+
+class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
+    """Choose what the parts are written to; outputs that are left out are taken back"""
+
+    bl_idname = "eigenparts.write_outputs"
+    bl_label = "Write Outputs"
+    bl_options = {"REGISTER", "UNDO"}
+
+    outputs: EnumProperty(
+        name="Outputs",
+        description="What the parts are written to, beside the attribute of the faces; all of it follows the level",
+        items=[
+            (key, name, description, 2**i)
+            for i, (key, (name, description, _)) in enumerate(output_registry.OUTPUTS.items())
+        ],
+        options={"ENUM_FLAG"},
+        default=set(output_registry.DEFAULT),
+    )
+    softness: FloatProperty(
+        name="Softness",
+        description="Width over which vertex groups pass from one part to the next; 0 for hard borders",
+        subtype="DISTANCE",
+        min=0,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        mesh = context.object.data
+        self.outputs, self.softness = set(output_registry.chosen(mesh)), output_registry.softness(mesh)
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        with refusals_told(self):
+            part_writer.write_outputs(context.object.data, self.outputs, self.softness)
+            return {"FINISHED"}
+        return {"CANCELLED"}
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_write_outputs,))

@@ -1,0 +1,71 @@
+"""What operators have in common that register one object once more.
+
+What was computed before is used as long as Blender runs; functions are not stored in files, so the first time after a
+file was loaded both meshes are analyzed again.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+from bpy.props import StringProperty
+
+from ..jobs import background
+from ..mesh_state import registration_record
+from ..messages.user_errors import Refusal, can_use_active_mesh
+from .register_meshes import Registration, Wish
+from .registering import SETTINGS, Registers, Tickets
+
+DAMAGED = "The registration stored on this mesh is damaged; register the selected meshes again."
+
+
+class RegistersAgain(Registers):
+    """Registers one object again as before, but for what ``wish`` says."""
+
+    object_name: StringProperty(name="Object", description="Name of the object; the active one if empty")
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return background.can_start_job(cls) and can_use_active_mesh(cls, context)
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], Tickets]:
+        obj = context.object if not self.object_name else _mesh_object(context, self.object_name)
+        match = registration_record.read(obj.data)
+        if match is None:
+            raise Refusal(registration_record.NOT_REGISTERED)
+        reference = registration_record.reference_object(obj.data) or _mesh_object(context, match.reference)
+        if reference.name not in context.view_layer.objects:
+            raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
+        if not _are_settings(match.settings, context.scene.eigenparts.bl_rna.properties):
+            raise Refusal(DAMAGED)
+        return self.start(context, reference, [obj], self.wish(match), match.settings)
+
+    def wish(self, match: registration_record.Match) -> Wish:
+        """Return what is to be different now."""
+        raise NotImplementedError
+
+
+def given_flips(match: registration_record.Match) -> dict[int, int]:
+    """Return the signs that the user gave before."""
+    return {int(number): sign for number, sign in match.flips.items()}
+
+
+def _are_settings(stored: dict[str, Any], known: bpy.types.bpy_prop_collection) -> bool:
+    """Whether what is stored can be the options of an analysis."""
+    return all(name in stored and _can_be(stored[name], known[name]) for name in SETTINGS)
+
+
+def _can_be(value: Any, option: bpy.types.Property) -> bool:
+    if option.type == "ENUM":
+        return isinstance(value, str) and value in option.enum_items
+    if option.type == "STRING":
+        return isinstance(value, str)
+    # Blender may give truth back as a number.
+    return isinstance(value, int) and option.type in ("INT", "BOOLEAN") and value >= getattr(option, "hard_min", 0)
+
+
+def _mesh_object(context: bpy.types.Context, name: str) -> bpy.types.Object:
+    obj = context.view_layer.objects.get(name)
+    if obj is None or obj.type != "MESH":
+        raise Refusal(f'There is no mesh object "{name}" here any more; register the selected meshes again.')
+    return obj

@@ -1,0 +1,170 @@
+"""Operator: put the Morse-Smale complex of the field on the mesh, as curves and dots."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import FloatProperty, IntProperty
+
+from ..mesh_state import state
+from ..mesh_state.palette import COMPLEX_COLOURS
+from ..mesh_state.palette import COMPLEX_ROLE as ROLE
+from ..messages.sentences import tell
+from ..outputs.rollback import nothing_left_behind
+from ..parts.fresh_analysis import FreshAnalysis
+
+# The object whose complex a collection holds.
+OF_OBJECT = "eigenparts_complex"
+# Radius of lines and of dots, as fractions of the largest extent of the mesh.
+LINE_RADIUS, DOT_RADIUS = 0.0015, 0.006
+# Quads of a ball, around and from pole to pole.
+DOT_SEGMENTS, DOT_RINGS = 16, 8
+
+
+@dataclass(frozen=True, eq=False)
+class TracedComplex:
+    """Polylines and dots by role, in the coordinates of the mesh.
+
+    Attributes
+    ----------
+    lines : dict of list of (p, 3)
+    dots : dict of (n, 3)
+    """
+
+    lines: dict[str, list[np.ndarray]]
+    dots: dict[str, np.ndarray]
+
+
+class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
+    """Put the critical points of the field on the active mesh, with the lines of steepest ascent between them"""
+
+    bl_idname = "eigenparts.trace_complex"
+    bl_label = "Trace Complex"
+    bl_options = {"UNDO"}
+
+    level: IntProperty(
+        name="Level", description="How many features to keep; -1 for the level that the mesh shows", default=-1, min=-1
+    )
+    thickness: FloatProperty(
+        name="Thickness", description="How thick lines and dots are, as a multiple of the usual", default=1.0, min=0.01
+    )
+
+    def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
+        owner = context.scene.objects[name]
+        found = traced_complex(analysis, self.level if self.level >= 0 else shown_level(owner.data, analysis))
+        size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
+        with nothing_left_behind(context):
+            lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in found.lines.items()}
+            dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in found.dots.items()}
+            # What is there from before goes only when there is something to take its place.
+            collection = empty_collection(context, name)
+            for role, data in {**lines, **dots}.items():
+                obj = add_object(collection, owner, role, data)
+                if role in dots:
+                    obj["places"] = found.dots[role].ravel().tolist()
+        n_dots = sum(len(places) for places in found.dots.values())
+        tell(self, "INFO", f'{n_dots} critical points are in the collection "{collection.name}".')
+        return {"FINISHED"}
+
+
+def shown_level(mesh: bpy.types.Mesh, analysis: Any) -> int | None:
+    """Return the level that a mesh shows, as far as the analysis has so many; None if it shows none."""
+    return min(state.summarize(mesh).level, analysis.hierarchy.n_levels - 1) if state.is_analyzed(mesh) else None
+
+
+def traced_complex(analysis: Any, level: int | None) -> TracedComplex:
+    """Return the lines and dots of a level."""
+    found = analysis.complex_at_level(level)
+    points, separatrices = found.critical_points, found.separatrices
+    places = analysis.net.positions[points.vertex]
+    lines: dict[str, list[np.ndarray]] = {"rising": [], "falling": []}
+    for rises, line in zip(separatrices.rises, separatrices.lines, strict=True):
+        lines["rising" if rises else "falling"].append(line)
+    lines["level"] = [line for saddle in points.value[points.kind == 1] for line in found.level_lines(saddle)]
+    dots = {role: places[points.kind == kind] for kind, role in enumerate(("minimum", "saddle", "maximum"))}
+    return TracedComplex(lines, dots)
+
+
+def empty_collection(context: bpy.types.Context, name: str) -> bpy.types.Collection:
+    """Return the collection for the complex of an object, with nothing in it."""
+    collection = next((c for c in bpy.data.collections if c.get(OF_OBJECT) == name), None)
+    if collection is None:
+        collection = bpy.data.collections.new(f"Complex of {name}")
+        collection[OF_OBJECT] = name
+    if name_of_scene_collection(context, collection) is None:
+        context.scene.collection.children.link(collection)
+    for old in [obj for obj in collection.objects if ROLE in obj]:
+        data = old.data
+        bpy.data.objects.remove(old)
+        if data.users == 0:
+            bpy.data.batch_remove([data])
+    return collection
+
+
+def name_of_scene_collection(context: bpy.types.Context, collection: bpy.types.Collection) -> str | None:
+    """Return the name of a collection if it is in the scene."""
+    return next((c.name for c in context.scene.collection.children_recursive if c == collection), None)
+
+
+def add_object(
+    collection: bpy.types.Collection, owner: bpy.types.Object, role: str, data: bpy.types.ID
+) -> bpy.types.Object:
+    """Put data in the place of the mesh, following it."""
+    obj = bpy.data.objects.new(data.name, data)
+    obj[ROLE] = role
+    obj.parent = owner
+    obj.color = (*COMPLEX_COLOURS[role], 1.0)
+    collection.objects.link(obj)
+    return obj
+
+
+def curve_of(role: str, lines: list[np.ndarray], radius: float) -> bpy.types.Curve:
+    """Return a round curve with a spline for each line."""
+    curve = bpy.data.curves.new(f"{role.capitalize()} lines", "CURVE")
+    curve.dimensions = "3D"
+    curve.bevel_depth = radius
+    curve.bevel_resolution = 1
+    for line in lines:
+        spline = curve.splines.new("POLY")
+        spline.points.add(len(line) - 1)
+        spline.points.foreach_set("co", np.column_stack([line, np.ones(len(line))]).ravel().astype(np.float32))
+    curve.materials.append(material_of(role))
+    return curve
+
+
+def dots_of(role: str, places: np.ndarray, radius: float) -> bpy.types.Mesh:
+    """Return a mesh of small balls."""
+    ball, faces = _ball()
+    vertices = (places[:, None] + radius * ball).reshape(-1, 3)
+    mesh = bpy.data.meshes.new(f"{role.capitalize()} dots")
+    offsets = len(ball) * np.arange(len(places))[:, None, None]
+    mesh.from_pydata(vertices.tolist(), [], (faces + offsets).reshape(-1, 4).tolist())
+    mesh.shade_smooth()
+    mesh.materials.append(material_of(role))
+    return mesh
+
+
+def material_of(role: str) -> bpy.types.Material:
+    """Return the material of a role, which shows its colour in every shading."""
+    material = next((m for m in bpy.data.materials if m.get(ROLE) == role), None)
+    if material is None:
+        material = bpy.data.materials.new(f"Complex {role}")
+        material[ROLE] = role
+        material.diffuse_color = (*COMPLEX_COLOURS[role], 1.0)
+    return material
+
+
+def _ball() -> tuple[np.ndarray, np.ndarray]:
+    """Return a ball of radius 1 made of quads; those at the poles are flat."""
+    turn, fall = np.meshgrid(np.arange(DOT_SEGMENTS), np.arange(DOT_RINGS + 1), indexing="ij")
+    longitude, latitude = 2 * np.pi * turn / DOT_SEGMENTS, np.pi * fall / DOT_RINGS
+    ring = np.sin(latitude)
+    places = np.stack([ring * np.cos(longitude), ring * np.sin(longitude), np.cos(latitude)], axis=-1)
+    number = turn * (DOT_RINGS + 1) + fall
+    following = np.roll(number, -1, axis=0)
+    quads = np.stack([number[:, :-1], number[:, 1:], following[:, 1:], following[:, :-1]], axis=-1)
+    return places.reshape(-1, 3), quads.reshape(-1, 4)
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_trace_complex,))

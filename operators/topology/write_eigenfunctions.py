@@ -1,0 +1,69 @@
+"""Operator: write the eigenfunctions of a mesh as attributes of its vertices."""
+
+from collections.abc import Callable
+from functools import partial
+
+import bpy
+import numpy as np
+from bpy.props import IntProperty
+
+from ... import compute
+from ..jobs import background
+from ..jobs.background import BackgroundOperator
+from ..mesh_data import mesh_arrays
+from ..mesh_data.mesh_arrays import OwnAttribute
+from ..messages.user_errors import can_use_active_mesh
+from ..parts.analyze import Ticket, find_mesh
+
+PREFIX = "eigenfunction_"
+
+
+class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator):
+    """Write the smoothest eigenfunctions of the active mesh as vertex attributes"""
+
+    bl_idname = "eigenparts.write_eigenfunctions"
+    bl_label = "Write Eigenfunctions"
+    bl_options = {"UNDO"}
+
+    n_functions: IntProperty(
+        name="Number",
+        description="How many functions are written, from the smoothest on",
+        default=6,
+        min=1,
+        soft_max=30,
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return background.can_start_job(cls) and can_use_active_mesh(cls, context)
+
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., np.ndarray], Ticket]:
+        mesh = context.object.data
+        mesh_arrays.refuse_foreign(mesh, _attributes(self.n_functions))
+        ticket = Ticket(mesh.session_uid, mesh_arrays.fingerprint(mesh))
+        return partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions), ticket
+
+    def finish(self, context: bpy.types.Context, ticket: Ticket, result: np.ndarray) -> set[str]:
+        mesh = find_mesh(ticket)
+        old = [name for name in mesh_arrays.own_names(mesh) if name.startswith(PREFIX)]
+        mesh_arrays.remove_own_attributes(mesh, old)
+        for own, function in zip(_attributes(self.n_functions), result.T, strict=True):
+            mesh_arrays.write_attribute(mesh, own, function)
+        mesh.update()
+        return {"FINISHED"}
+
+
+def _attributes(n_functions: int) -> tuple[OwnAttribute, ...]:
+    return tuple(OwnAttribute(f"{PREFIX}{number}", "FLOAT", "POINT") for number in range(1, n_functions + 1))
+
+
+def _functions_on_vertices(
+    arrays: mesh_arrays.MeshArrays, n_functions: int, progress: Callable[[float, str], None]
+) -> np.ndarray:
+    """Return (V, k) float32; knows nothing of Blender, so any thread may do it."""
+    mesh = compute.TriangleMesh(arrays.vertices, arrays.triangles)
+    basis = compute.solve_eigenbasis(mesh, n_functions, progress=progress)
+    return np.float32(basis.functions[: len(arrays.vertices)])
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_write_eigenfunctions,))

@@ -1,0 +1,164 @@
+"""Read from an object the layers that are to be transferred."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..mesh_data import mesh_arrays
+from ..mesh_data.attribute_values import STORAGES, read_attribute
+from ..mesh_state import state
+from ..messages.user_errors import Refusal
+from ..outputs import material_slots
+from ..outputs.part_writer import PART, read_labels
+from . import layers
+from .layers import Layer
+
+# Attributes that begin with a point are Blender's own, but these are made by hand.
+MADE_BY_HAND = (".sculpt_face_set", ".sculpt_mask")
+# These have a layer of their own, or are the shape itself.
+NOT_ATTRIBUTES = ("position", "material_index")
+ABSOLUTE = "The shape keys of {} are absolute; only relative ones can be transferred."
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Which layers are wanted.
+
+    Attributes
+    ----------
+    kinds : frozenset of str
+        "PARTS", "FACES", "GROUPS", "ATTRIBUTES", "COLORS", "UVS", "SHAPE_KEYS", "MATERIALS".
+    groups : str
+        "ALL", "DEFORM" or "NAMED".
+    group_names : tuple of str
+    swaps_sides : bool
+        Whether what is left on the source is right on the target.
+    """
+
+    kinds: frozenset[str]
+    groups: str
+    group_names: tuple[str, ...]
+    swaps_sides: bool
+
+
+def read_layers(obj: bpy.types.Object, choice: Choice) -> list[Layer]:
+    """Return the chosen layers of an object, under the names that they get on the targets."""
+    readers = {
+        "PARTS": _parts,
+        "GROUPS": lambda obj: _groups(obj, _chosen_groups(obj, choice)),
+        "SHAPE_KEYS": _shape_keys,
+        "MATERIALS": _materials,
+    }
+    found = [layer for kind, read in readers.items() if kind in choice.kinds for layer in read(obj)]
+    found += [layer for kind, layer in _attributes(obj.data) if kind in choice.kinds]
+    if not found:
+        raise Refusal(f"{obj.name} has none of the layers that were chosen.")
+    return [_with_side(layer) for layer in found] if choice.swaps_sides else found
+
+
+def _with_side(layer: Layer) -> Layer:
+    if layer.kind not in (layers.GROUP, layers.SHAPE_KEY):
+        return layer
+    return Layer(layer.kind, bpy.utils.flip_name(layer.name), layer.values)
+
+
+def _parts(obj: bpy.types.Object) -> Iterator[Layer]:
+    mesh = obj.data
+    if PART.name in mesh_arrays.own_names(mesh) and PART.name in mesh.attributes:
+        yield Layer(layers.PARTS, PART.name, read_labels(mesh).reshape(-1, 1), "INT")
+
+
+def _chosen_groups(obj: bpy.types.Object, choice: Choice) -> list[str]:
+    present = [group.name for group in obj.vertex_groups]
+    if choice.groups == "NAMED":
+        missing = [name for name in choice.group_names if name not in present]
+        if missing:
+            raise Refusal(f'{obj.name} has no vertex group "{missing[0]}".')
+        return list(choice.group_names)
+    if choice.groups == "DEFORM":
+        bones = _deform_bones(obj)
+        if not bones:
+            raise Refusal(f"{obj.name} has no armature whose bones deform it; transfer all groups or name some.")
+        return [name for name in present if name in bones]
+    return present
+
+
+def _deform_bones(obj: bpy.types.Object) -> set[str]:
+    rigs = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"] + [obj.parent]
+    return {
+        bone.name
+        for rig in rigs
+        if rig is not None and rig.type == "ARMATURE"
+        for bone in rig.data.bones
+        if bone.use_deform
+    }
+
+
+def _groups(obj: bpy.types.Object, names: list[str]) -> Iterator[Layer]:
+    weights = read_weights(obj, names)
+    for name, column in zip(names, weights.T, strict=True):
+        yield Layer(layers.GROUP, name, column.reshape(-1, 1))
+
+
+def read_weights(obj: bpy.types.Object, names: list[str]) -> np.ndarray:
+    """Return (V, n) the weights of vertex groups, 0 where there is no such group or the vertex is not in it."""
+    weights = np.zeros((len(obj.data.vertices), len(names)))
+    column = {obj.vertex_groups[name].index: place for place, name in enumerate(names) if name in obj.vertex_groups}
+    # Blender gives weights away one vertex at a time only.
+    for vertex in obj.data.vertices if column else ():
+        for element in vertex.groups:
+            if element.group in column:
+                weights[vertex.index, column[element.group]] = element.weight
+    return weights
+
+
+def _shape_keys(obj: bpy.types.Object) -> Iterator[Layer]:
+    keys = obj.data.shape_keys
+    if keys is None:
+        return
+    if not keys.use_relative:
+        raise Refusal(ABSOLUTE.format(obj.name))
+    for block in keys.key_blocks[1:]:
+        moved = read_key(block) - read_key(block.relative_key)
+        yield Layer(layers.SHAPE_KEY, block.name, moved)
+
+
+def read_key(block: bpy.types.ShapeKey) -> np.ndarray:
+    """Return the (V, 3) positions of a shape key."""
+    positions = np.empty(3 * len(block.data), dtype=np.float32)
+    block.data.foreach_get("co", positions)
+    return positions.reshape(-1, 3).astype(np.float64)
+
+
+def _materials(obj: bpy.types.Object) -> Iterator[Layer]:
+    mesh = obj.data
+    names, indices = material_slots.assignment_of_user(mesh)
+    if not names:
+        return
+    yield Layer(layers.MATERIAL, "materials", np.clip(indices, 0, len(names) - 1).reshape(-1, 1), "INT", names)
+
+
+def _attributes(mesh: bpy.types.Mesh) -> Iterator[tuple[str, Layer]]:
+    """Yield the attributes that are not ours, each with the kind of layer that it belongs to."""
+    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in state.ATTRIBUTES)}
+    for attribute in mesh.attributes:
+        kind = _kind_of(attribute)
+        is_blenders = attribute.name.startswith(".") and attribute.name not in MADE_BY_HAND
+        if kind and not is_blenders and attribute.name not in ours and attribute.name not in NOT_ATTRIBUTES:
+            layer = Layer(
+                attribute.domain, attribute.name, read_attribute(attribute), attribute.data_type, is_uv=kind == "UVS"
+            )
+            yield kind, layer
+
+
+def _kind_of(attribute: bpy.types.Attribute) -> str:
+    """Return the kind of layer that an attribute is, or nothing if it cannot be transferred."""
+    if attribute.data_type not in STORAGES:
+        return ""
+    if attribute.data_type in ("FLOAT_COLOR", "BYTE_COLOR") and attribute.domain in ("POINT", "CORNER"):
+        return "COLORS"
+    if attribute.domain == "CORNER":
+        return "UVS" if attribute.data_type == "FLOAT2" else ""
+    return {"POINT": "ATTRIBUTES", "FACE": "FACES"}.get(attribute.domain, "")

@@ -1,0 +1,217 @@
+"""Write transferred layers to an object, mixed with what is there; what stands in the way is told before."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ... import compute
+from ..mesh_data import mesh_arrays
+from ..mesh_data.attribute_values import read_attribute, store_values
+from ..mesh_state import state
+from ..messages.user_errors import Refusal, in_name_of
+from ..outputs import corner_colours
+from ..outputs.division import Division
+from ..outputs.part_writer import PART
+from . import layers
+from .layer_reading import ABSOLUTE, read_key, read_weights
+from .layers import Layer
+
+# Weights below this are left out of a vertex group.
+LEAST_WEIGHT = 1e-4
+MOST_UV_LAYERS = 8
+
+
+@dataclass(frozen=True)
+class Mix:
+    """How much of what comes is taken: a factor, and the name of a vertex group that holds a share of it."""
+
+    factor: float
+    mask: str
+
+
+def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> None:
+    """Raise a Refusal that names the object if one of the layers cannot be written to it."""
+    with in_name_of(obj.name):
+        _refuse_linked(obj)
+        if mix.mask and mix.mask not in obj.vertex_groups:
+            raise Refusal(f'There is no vertex group "{mix.mask}" to be used as the mask.')
+        for layer in given:
+            _OBSTACLES.get(layer.kind, _refuse_clash)(obj, layer)
+        new_uvs = {layer.name for layer in given if layer.is_uv} - {uv.name for uv in obj.data.uv_layers}
+        if len(obj.data.uv_layers) + len(new_uvs) > MOST_UV_LAYERS:
+            raise Refusal(f"A mesh can have {MOST_UV_LAYERS} UV maps; delete some first.")
+
+
+def _refuse_linked(obj: bpy.types.Object) -> None:
+    if obj.library is not None or obj.data.library is not None:
+        raise Refusal("The object or its mesh is linked from another file; make it local first.")
+
+
+def _refuse_locked(obj: bpy.types.Object, layer: Layer) -> None:
+    if layer.name in obj.vertex_groups and obj.vertex_groups[layer.name].lock_weight:
+        raise Refusal(f'The vertex group "{layer.name}" is locked; unlock it first.')
+
+
+def _refuse_missing_basis(obj: bpy.types.Object, layer: Layer) -> None:
+    keys = obj.data.shape_keys
+    if keys is None:
+        raise Refusal("The mesh has no Basis that shape keys could start from; add a shape key first.")
+    if not keys.use_relative:
+        raise Refusal(ABSOLUTE.format(obj.name))
+    if keys.key_blocks[0].name == layer.name:
+        raise Refusal(f'"{layer.name}" is the Basis here, but a shape key on the source; rename one of them.')
+    if layer.name in keys.key_blocks and keys.key_blocks[layer.name].lock_shape:
+        raise Refusal(f'The shape key "{layer.name}" is locked; unlock it first.')
+
+
+def _refuse_foreign_part(obj: bpy.types.Object, layer: Layer) -> None:
+    mesh_arrays.refuse_foreign(obj.data, (PART, corner_colours.PART_COLOR))
+
+
+def _refuse_clash(obj: bpy.types.Object, layer: Layer) -> None:
+    present = obj.data.attributes.get(layer.name)
+    if present is not None and layer.name in mesh_arrays.own_names(obj.data):
+        raise Refusal(f'The attribute "{layer.name}" here is from Eigenparts; take it back, or rename the other one.')
+    if present is not None and (present.data_type, present.domain) != (layer.data_type, layer.kind):
+        raise Refusal(f'There is an attribute "{layer.name}" of another kind; rename one of them.')
+
+
+_OBSTACLES = {
+    layers.GROUP: _refuse_locked,
+    layers.SHAPE_KEY: _refuse_missing_basis,
+    layers.PARTS: _refuse_foreign_part,
+    layers.MATERIAL: lambda obj, layer: None,
+}
+
+
+def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: np.ndarray) -> None:
+    """Write layers to an object that `refuse_obstacles` let pass.
+
+    Parameters
+    ----------
+    colours : (n, 4) float32
+        Of the parts, by their labels.
+    """
+    share = _shares(obj, mix)
+    writers = {
+        layers.GROUP: lambda some: _write_groups(obj, some, share),
+        layers.SHAPE_KEY: lambda some: [_write_key(obj, layer, share) for layer in some],
+        layers.MATERIAL: lambda some: [_write_materials(obj.data, layer, share) for layer in some],
+        layers.PARTS: lambda some: [_write_parts(obj.data, layer, share, colours) for layer in some],
+    }
+    for kind in (
+        layers.GROUP,
+        layers.POINT,
+        layers.FACE,
+        layers.CORNER,
+        layers.SHAPE_KEY,
+        layers.MATERIAL,
+        layers.PARTS,
+    ):
+        some = [layer for layer in given if layer.kind == kind]
+        if some:
+            writers.get(kind, lambda some: [_write_attribute(obj.data, layer, share) for layer in some])(some)
+    obj.data.update()
+
+
+def _shares(obj: bpy.types.Object, mix: Mix) -> np.ndarray:
+    """Return (V,) how much of what comes each vertex takes."""
+    if not mix.mask:
+        return np.full(len(obj.data.vertices), mix.factor)
+    return mix.factor * read_weights(obj, [mix.mask])[:, 0]
+
+
+def _write_groups(obj: bpy.types.Object, some: list[Layer], share: np.ndarray) -> None:
+    names = [layer.name for layer in some]
+    before = read_weights(obj, names)
+    after = compute.mixed(before, np.hstack([layer.values for layer in some]), share)
+    for name, column, old in zip(names, np.clip(after, 0, 1).T, before.T, strict=True):
+        if name not in obj.vertex_groups:
+            obj.vertex_groups.new(name=name)
+        fill_group(obj.vertex_groups[name], np.where(column < LEAST_WEIGHT, 0, column), old)
+
+
+def fill_group(group: bpy.types.VertexGroup, weights: np.ndarray, before: np.ndarray) -> None:
+    """Give vertices (V,) their weights in a group; where they have none they are taken out if they were in it."""
+    group.remove(np.flatnonzero((weights == 0) & (before > 0)).tolist())
+    group.add(np.flatnonzero(weights == 1).tolist(), 1.0, "REPLACE")
+    # Blender takes one weight for any number of vertices, so those between 0 and 1 go one by one.
+    for vertex in np.flatnonzero((weights > 0) & (weights < 1)).tolist():
+        group.add([vertex], weights[vertex], "REPLACE")
+
+
+def _write_key(obj: bpy.types.Object, layer: Layer, share: np.ndarray) -> None:
+    keys = obj.data.shape_keys
+    block = keys.key_blocks.get(layer.name)
+    if block is None:
+        block = obj.shape_key_add(name=layer.name, from_mix=False)
+        block.data.foreach_set("co", np.float32(read_key(keys.reference_key)).ravel())
+    basis = read_key(block.relative_key)
+    moved = basis + compute.mixed(read_key(block) - basis, layer.values, share)
+    block.data.foreach_set("co", np.float32(moved).ravel())
+
+
+def _write_materials(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray) -> None:
+    slot = np.array([_slot(mesh, name) for name in layer.names], dtype=np.int32)
+    if "material_index" not in mesh.attributes:
+        mesh.attributes.new("material_index", "INT", "FACE")
+    attribute = mesh.attributes["material_index"]
+    store_values(attribute, _replaced(read_attribute(attribute), slot[layer.values], _of_faces(mesh, share)))
+
+
+def _slot(mesh: bpy.types.Mesh, name: str) -> int:
+    """Return the slot that has a material, a new one if there is none."""
+    material = bpy.data.materials.get(name)
+    slots = list(mesh.materials)
+    if material not in slots:
+        mesh.materials.append(material)
+        return len(slots)
+    return slots.index(material)
+
+
+def _write_parts(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray, colours: np.ndarray) -> None:
+    """Write labels and colours of parts; a mesh with an analysis of its own keeps them, as its levels lead to them."""
+    if state.is_analyzed(mesh):
+        return
+    before = np.zeros_like(layer.values)
+    if PART.name in mesh.attributes:
+        before = mesh_arrays.read_own_integers(mesh, PART).reshape(-1, 1)
+    labels = _replaced(before, layer.values, _of_faces(mesh, share)).ravel().astype(np.int32)
+    mesh_arrays.write_attribute(mesh, PART, labels)
+    shown = np.minimum(labels, len(colours) - 1)
+    corner_colours.write(mesh, Division(shown, {}, colours))
+
+
+def _write_attribute(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray) -> None:
+    attribute = mesh.attributes.get(layer.name) or _new_attribute(mesh, layer)
+    before = read_attribute(attribute)
+    share = _spread(mesh, layer.kind, share)
+    if layer.can_blend:
+        store_values(attribute, compute.mixed(before.astype(np.float64), layer.values, share))
+    else:
+        store_values(attribute, _replaced(before, layer.values, share))
+
+
+def _new_attribute(mesh: bpy.types.Mesh, layer: Layer) -> bpy.types.Attribute:
+    if layer.is_uv:
+        mesh.uv_layers.new(name=layer.name)
+        return mesh.attributes[layer.name]
+    return mesh.attributes.new(layer.name, layer.data_type, layer.kind)
+
+
+def _spread(mesh: bpy.types.Mesh, domain: str, share: np.ndarray) -> np.ndarray:
+    if domain == layers.CORNER:
+        return share[mesh_arrays.vertex_of_corner(mesh)]
+    return _of_faces(mesh, share) if domain == layers.FACE else share
+
+
+def _of_faces(mesh: bpy.types.Mesh, share: np.ndarray) -> np.ndarray:
+    """Return (F,) the mean share of the corners of each face."""
+    n_corners = mesh_arrays.n_corners_of_polygon(mesh)
+    face = np.repeat(np.arange(len(n_corners)), n_corners)
+    return np.bincount(face, share[mesh_arrays.vertex_of_corner(mesh)], len(n_corners)) / n_corners
+
+
+def _replaced(before: np.ndarray, after: np.ndarray, share: np.ndarray) -> np.ndarray:
+    return np.where(compute.taken_over(share, len(before))[:, None], after, before)

@@ -1,0 +1,48 @@
+"""What an artist puts on a mesh, layer by layer, as arrays: the common form for reading, transferring and writing."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..mesh_data.attribute_values import STORAGES
+
+GROUP, POINT, FACE, CORNER, SHAPE_KEY, MATERIAL, PARTS = (
+    "GROUP", "POINT", "FACE", "CORNER", "SHAPE_KEY", "MATERIAL", "PARTS",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One layer of a mesh.
+
+    Attributes
+    ----------
+    kind : str
+        One of the names above.
+    name : str
+    values : (n, components)
+        For each vertex, face or corner.
+    data_type : str
+        Of an attribute, as Blender calls it.
+    names : tuple of str
+        Of the materials that values count.
+    is_uv : bool
+    """
+
+    kind: str
+    name: str
+    values: np.ndarray
+    data_type: str = ""
+    names: tuple[str, ...] = ()
+    is_uv: bool = False
+
+    @property
+    def can_blend(self) -> bool:
+        """Whether values between two values make sense."""
+        if self.kind in (GROUP, SHAPE_KEY):
+            return True
+        return self.kind in (POINT, CORNER) and STORAGES[self.data_type].can_blend
+
+    def with_values(self, values: np.ndarray) -> "Layer":
+        """Return the layer with other values."""
+        return replace(self, values=values)
