@@ -12,7 +12,7 @@ from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
-from ..dense.matched_points import source_points
+from ..dense.point_map import point_map
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
 from .carried_labels import Divisible, FaceLabels, carry_labels, divisible
 from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
@@ -146,7 +146,7 @@ def label_matched(
         May raise `Cancelled`.
     """
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
-    landing = source_points(source, target.shape, matching, section(progress, 0, 0.8))
+    landing = point_map(source, target.shape, matching, section(progress, 0, 0.8))
     progress(0.8, "Carrying the parts over")
     cuts, level = partner_cuts(reference.parts, target, landing)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
