@@ -74,7 +74,7 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
 def bridged_surface(mesh: TriangleMesh) -> Surface:
     """Return the largest component together with the shells that prolong it, in a state that can be analyzed.
 
-    Where shells nearly touch, triangles of our own hold them together; see `.bridging`. The rest is as in
+    Where shells nearly touch, triangles of our own hold them together; see `bridge_shells`. The rest is as in
     `clean_surface`.
 
     Raises
