@@ -14,6 +14,7 @@ from ...analysis import Analysis
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
 from ...surface.mesh import Bools, Floats, Ints
+from ...surface.ties import first_largest
 from ..eigenfunctions.matching import Matching, match_surfaces
 from ..eigenfunctions.spectral_shape import spectral_shape
 from .by_faces import map_by_faces
@@ -78,7 +79,7 @@ class Correspondence:
     @cached_property
     def nearest_vertex(self) -> Ints:
         """(Vt,) the vertex of the source next to each place."""
-        return self.source_triangles[self.triangles, self.barycentric.argmax(axis=1)]
+        return self.source_triangles[self.triangles, first_largest(self.barycentric)]
 
     def transfer(self, values: ArrayLike) -> Floats:
         """Return (Vt, ...) values (Vs, ...) of the source's vertices on the target's, linear on each triangle."""

@@ -12,7 +12,7 @@ from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from .hypotheses import Effort, find_hypotheses, spectrum_of
-from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of
+from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded
 
@@ -197,15 +197,15 @@ def _ranked_candidates(
 ) -> list[Candidate]:
     """Return scored hypotheses, best first; the search is widened until the best of them is sure."""
     spectra = spectrum_of(source), spectrum_of(target)
-    ranked: list[Candidate] = []
+    best_first: list[Candidate] = []
     for number, effort in enumerate(EFFORTS):
         searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
         hypotheses = find_hypotheses(*spectra, effort, progress=searching)
         scored = scorer.score(hypotheses.best(effort.n_refined), progress=refining)
-        ranked = sorted(ranked + scored, key=lambda candidate: candidate.rank)
-        if confidence_of(ranked[0], ranked) >= SURE:
+        best_first = ranked(best_first + scored)
+        if confidence_of(best_first[0], best_first) >= SURE:
             break
-    return ranked
+    return best_first
 
 
 def _candidates_with_signs(
@@ -217,7 +217,7 @@ def _candidates_with_signs(
     scored = []
     for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
         hypotheses = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
-        scored.append(sorted(scorer.score(hypotheses, given, refining), key=lambda candidate: candidate.rank))
+        scored.append(ranked(scorer.score(hypotheses, given, refining)))
     return scored[0], scored[0] + scored[1]
 
 
