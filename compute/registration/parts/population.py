@@ -10,6 +10,7 @@ import numpy as np
 from ...analysis import Analysis
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
+from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.matched_points import source_points
@@ -67,7 +68,7 @@ def register(
     reference : int
         Which of them gives the parts.
     level : int, optional
-        Level of the reference; its default level if None.
+        Level of the reference whose features are the parts; its default level if None.
     executor : concurrent.futures.Executor, optional
         Runs the pairs: threads, processes or a cluster that offers this interface.
     progress : Progress, optional
@@ -90,7 +91,7 @@ def register(
         raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
     progress = rising(progress or silent)
     progress(0.0, "Preparing the reference")
-    own = analyses[reference].segment(level=level)
+    own = analyses[reference].segment(level=level, mode=FEATURES)
     prepared = prepare_reference(analyses[reference], own)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
     run = _run_here if executor is None else partial(_run_elsewhere, executor)
