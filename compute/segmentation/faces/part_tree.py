@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ...surface.mesh import Bools, Floats, Ints, sum_by
+from ...surface.ties import ROUNDING
 from ..hierarchy.arc_measures import ArcMeasures
 from ..hierarchy.arc_tree import ArcTree
 from ..hierarchy.levels import Hierarchy
@@ -93,7 +94,7 @@ class PartTree:
         for tree, pieces, cut in zip(self.trees, self.branches, cuts, strict=True):
             label = tree.spread(cut)[pieces.arc]
             area = sum_by(label, pieces.area)[label]
-            is_on_top = (label > 0) & (label != body) & (area < size)
+            is_on_top = (label > 0) & (label != body) & (area < (1 - ROUNDING) * size)
             labels, size = np.where(is_on_top, label, labels), np.where(is_on_top, area, size)
         return labels
 
