@@ -58,7 +58,6 @@ from .segmentation.edits.corrections import PAINT as PAINT
 from .segmentation.edits.corrections import SPLIT as SPLIT
 from .segmentation.edits.corrections import Correction as Correction
 from .segmentation.edits.corrections import Corrections as Corrections
-from .segmentation.edits.part_tracking import Divided as Divided
 from .segmentation.edits.part_tracking import carried as carried
 from .segmentation.edits.part_tracking import carried_painting as carried_painting
 from .segmentation.edits.part_tracking import renumbered as renumbered
@@ -76,16 +75,17 @@ from .segmentation.faces.branches import Branches as Branches
 from .segmentation.faces.branches import connected_branches as connected_branches
 from .segmentation.faces.face_graph import FaceGraph as FaceGraph
 from .segmentation.faces.face_graph import face_graph as face_graph
-from .segmentation.faces.level_cuts import cut_arcs as cut_arcs
+from .segmentation.faces.part_tree import PartTree as PartTree
+from .segmentation.hierarchy.arc_measures import ArcMeasures as ArcMeasures
 from .segmentation.hierarchy.arc_tree import ArcTree as ArcTree
 from .segmentation.hierarchy.levels import DEFAULT_THRESHOLD as DEFAULT_THRESHOLD
 from .segmentation.hierarchy.levels import NOISE_THRESHOLD as NOISE_THRESHOLD
 from .segmentation.hierarchy.levels import Hierarchy as Hierarchy
 from .segmentation.hierarchy.nesting import first_own_part as first_own_part
 from .segmentation.hierarchy.nesting import number_behind as number_behind
+from .segmentation.modes import MODES as MODES
 from .segmentation.parts.function_hints import FunctionHint as FunctionHint
 from .segmentation.parts.function_hints import judge_eigenfunctions as judge_eigenfunctions
-from .segmentation.parts.part_labels import MODES as MODES
 from .segmentation.parts.part_labels import Parts as Parts
 from .segmentation.parts.part_labels import Segmentation as Segmentation
 from .segmentation.parts.part_labels import label_behind as label_behind

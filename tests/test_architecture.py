@@ -34,7 +34,7 @@ ORDER = {
         *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
         *("registration", "skeletons"),
     ],
-    "compute.segmentation": ["hierarchy", "faces", "borders", "edits", "parts"],
+    "compute.segmentation": ["modes", "hierarchy", "faces", "borders", "edits", "parts"],
     "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],
     "operators": [
         *("messages", "mesh_data", "mesh_state", "outputs", "jobs", "parts", "corrections", "registration"),

@@ -9,7 +9,7 @@ from compute.fields import scalar_field, shell_fields
 from compute.registration.dense import by_shape, deformation_graph, nonrigid_alignment, point_map, transfer
 from compute.registration.eigenfunctions import hypotheses, map_scoring, spectral_shape, zoomout
 from compute.registration.parts import part_matching
-from compute.segmentation.hierarchy import levels, necks, nesting
+from compute.segmentation.hierarchy import arc_measures, levels, nesting
 from compute.skeletons import bends, binding
 from compute.surface import bridging
 from tests.docs.pages import ROOT
@@ -75,7 +75,7 @@ DECISIONS = {
     },
     "nested_in_blender": {
         "neck": f"of the two sides, below {nesting.NECK:g}",
-        "height": f"span {percent(necks.LEAST_HEIGHT)} of the range",
+        "height": f"span {percent(arc_measures.LEAST_HEIGHT)} of the range",
         "area": f"have {percent(nesting.LEAST_AREA)} of the area",
     },
     "matching_by_moments": {"growth": f"grow to {hypotheses.Effort().levels[-1]} first"},

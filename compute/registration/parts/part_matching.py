@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...segmentation.faces.level_cuts import cut_arcs
 from ...segmentation.hierarchy.arc_tree import ArcTree
 from ...segmentation.hierarchy.levels import Hierarchy
+from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import BODY, Parts
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import evened
@@ -49,7 +49,7 @@ def reference_parts(labels: Ints, parts: Parts, level: int, reference: Divisible
     given = given_parts(labels, parts, reference)
     is_inside = _nesting(given.id, given.parent)
     whole = given.shares[:, 1:] @ (is_inside | np.eye(len(given.id), dtype=bool)).astype(float)
-    least = _least_persistence(reference.hierarchy, level)
+    least = _least_persistence(reference.part_tree.hierarchy, level)
     return ReferenceParts(
         given=given,
         table=parts,
@@ -86,18 +86,17 @@ def partner_cuts(reference: ReferenceParts, target: Divisible, point_map: Ints) 
     point_map : (n,) int64
         The reference's point that each of the target's points corresponds to.
     """
-    hierarchy, branches, shape = target.hierarchy, target.branches, target.shape
-    level = hierarchy.level_of_threshold(reference.least_persistence)
+    part_tree, shape = target.part_tree, target.shape
+    level = part_tree.hierarchy.level_of_threshold(reference.least_persistence)
     target_shares = reference.shares[point_map]
     covers = []
-    for tree, pieces in zip(hierarchy.trees, branches, strict=True):
-        arc_of_triangle = pieces.arc[pieces.of_face][target.face]
-        covers.append(_cover(tree, shape.shares_at_points(arc_of_triangle, len(tree.parent)), target_shares))
+    for tree, arc_of_face in zip(part_tree.trees, part_tree.arcs_of_faces, strict=True):
+        covers.append(_cover(tree, shape.shares_at_points(arc_of_face[target.face], len(tree.parent)), target_shares))
     first_free = 1 + reference.given.highest
     cuts = [np.zeros(len(cover.overlap), dtype=np.int64) for cover in covers]
     for part, tree_number, arc in _partners(reference, covers):
         cuts[tree_number][arc] = reference.given.id[part]
-    for number, cut in enumerate(cut_arcs(hierarchy, branches, level)):
+    for number, cut in enumerate(part_tree.cut_arcs(level, FEATURES)):
         is_free = _apart_from(np.flatnonzero(cuts[number]), covers[number]) & (cut != BODY)
         cuts[number][is_free] = first_free + cut[is_free]
     return cuts, level

@@ -10,6 +10,7 @@ import numpy as np
 from ...analysis import Analysis
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
+from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.point_map import point_map
@@ -69,7 +70,7 @@ def register(
     reference : int
         Number of the shape that gives the parts, from 0.
     level : int, optional
-        Level of the reference; its default level if None.
+        Level of the reference whose features are the parts; its default level if None.
     executor : concurrent.futures.Executor, optional
         Runs the pairs: threads, processes or a cluster that offers this interface.
     progress : Progress, optional
@@ -104,7 +105,7 @@ def register(
         raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
     progress = rising(progress or silent)
     progress(0.0, "Preparing the reference")
-    reference_segmentation = analyses[reference].segment(level=level)
+    reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
     prepared = prepare_reference(analyses[reference], reference_segmentation)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
     run = _run_serially if executor is None else partial(_run_in_executor, executor)

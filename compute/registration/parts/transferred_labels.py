@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from ...analysis import Analysis
-from ...segmentation.faces.branches import Branches, connected_branches, repaired_labels
+from ...segmentation.faces.branches import connected_branches, repaired_labels
 from ...segmentation.faces.face_graph import FaceGraph, face_graph
-from ...segmentation.hierarchy.levels import Hierarchy
+from ...segmentation.faces.part_tree import PartTree
 from ...segmentation.parts.part_labels import BODY, BranchLabels, Parts, label_behind
 from ...surface.cleaning import Surface
 from ...surface.heat_smoothing import smoothed
@@ -45,7 +45,7 @@ class FaceLabels:
     warnings: tuple[str, ...] = ()
     resting: tuple[int, ...] = ()
 
-    def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
+    def of_faces(self, part_tree: PartTree) -> NDArray[np.int32]:
         """Return the label of each face, whatever branch it is on."""
         return self.faces
 
@@ -58,8 +58,7 @@ class Divisible:
     ----------
     surface : Surface
     shape : SpectralShape
-    hierarchy : Hierarchy
-    branches : tuple of Branches
+    part_tree : PartTree
         Of the faces.
     graph : FaceGraph
     face : (m,) int64
@@ -68,8 +67,7 @@ class Divisible:
 
     surface: Surface
     shape: SpectralShape
-    hierarchy: Hierarchy
-    branches: tuple[Branches, ...]
+    part_tree: PartTree
     graph: FaceGraph
     face: Ints
 
@@ -90,19 +88,12 @@ def divisible(analysis: Analysis, shape: SpectralShape, face_of_triangle: Ints |
     face_of_triangle : (T,) int64, optional
         The polygon each triangle of the input belongs to; the triangles themselves if None.
     """
-    branches = analysis.branches(face_of_triangle)
+    part_tree = analysis.part_tree(face_of_triangle)
     if face_of_triangle is None:
         face_of_triangle = np.arange(len(analysis.mesh.triangles))
     graph = face_graph(analysis.mesh, analysis.surface, face_of_triangle)
     face = face_of_triangle[shape.input_triangle]
-    return Divisible(
-        surface=analysis.surface,
-        shape=shape,
-        hierarchy=analysis.hierarchy,
-        branches=branches,
-        graph=graph,
-        face=face,
-    )
+    return Divisible(surface=analysis.surface, shape=shape, part_tree=part_tree, graph=graph, face=face)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,10 +154,10 @@ def transfer_labels(
     level : int
         The target's.
     """
-    by_arcs = label_behind(cuts, target.hierarchy, target.branches, level)
+    by_arcs = label_behind(cuts, target.part_tree, level)
     if point_map is None:
         return FaceLabels(level, given.labels.astype(np.int32), _table_of_parts(given, given.labels, by_arcs, target))
-    flat = by_arcs.of_faces(target.branches).astype(np.int64)
+    flat = by_arcs.of_faces(target.part_tree).astype(np.int64)
     present = np.append(by_arcs.parts.id, given.id[given.is_drawn])
     labels = np.where(flat > given.highest, flat, _transferred(given, target, point_map, present))
     labels = _connected(labels[target.graph.stands_for], target.graph)

@@ -119,7 +119,7 @@ def test_values_of_ones_own_count_on_each_shell_by_themselves():
 
 def test_eyes_take_the_part_of_what_they_lie_on():
     analysis = analyze(TOGETHER, order=1, shells="separate")
-    first, _, eye_on_body, eye_on_arm = np.split(analysis.segment().labels, ENDS)
+    first, _, eye_on_body, eye_on_arm = np.split(analysis.segment(mode="features").labels, ENDS)
     body = analysis.segment(level=0).labels[ENDS[0]]
     assert set(eye_on_body.tolist()) == {body}
     centres = np.linalg.norm(CHARACTERS[0].vertices[CHARACTERS[0].triangles].mean(axis=1) - [2.4, 0, 0.15], axis=1)
