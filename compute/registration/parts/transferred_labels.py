@@ -205,7 +205,14 @@ def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, targ
     parent[given.id] = given.parent
     area, count = sum_by(labels, target.graph.area, n), np.bincount(labels, minlength=n)
     ids = np.flatnonzero(count)
-    return Parts(ids, _present_parents(parent, count > 0)[ids], extremum[ids], saddle[ids], area[ids], count[ids])
+    return Parts(
+        id=ids,
+        parent=_present_parents(parent, count > 0)[ids],
+        extremum=extremum[ids],
+        saddle=saddle[ids],
+        area=area[ids],
+        n_triangles=count[ids],
+    )
 
 
 def _present_parents(parent: Ints, is_present: Bools) -> Ints:

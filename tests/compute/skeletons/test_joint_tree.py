@@ -70,18 +70,18 @@ def test_a_spindle_is_planned_from_its_middle_to_both_tips(shape):
     assert {limb.sides[1] for limb in planned.limbs} == {frozenset([0]), frozenset([1])}
 
 
-def test_each_vertex_belongs_to_the_nearest_bone_of_its_part(shape):
+def test_in_the_body_each_vertex_belongs_to_a_bone_of_its_part_however_near_others_are(shape):
     tree = JointTree(
         places=np.array([[0, 0, 0], [0, 0, 2.9], [0, 0, -2.9]]),
         parent=np.array([-1, 0, 0]),
-        part=np.array([9, 1, 0]),
+        part=np.array([9, 0, 1]),
         radius=np.ones(3),
         loops=np.zeros((0, 2), dtype=np.int64),
         bone_of_slice=np.full(shape.slices.count, -1),
     )
     owner, z = bones_of_vertices(shape.analysis, shape.slices, tree), shape.analysis.mesh.vertices[:, 2]
     clear = np.abs(z) > 0.2
-    np.testing.assert_array_equal(owner[clear], np.where(z[clear] > 0, 1, 2))
+    np.testing.assert_array_equal(owner[clear], np.where(z[clear] > 0, 2, 1))
 
 
 def test_on_limbs_the_level_set_decides(shape):
