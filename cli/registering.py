@@ -115,9 +115,9 @@ class Register:
         warnings = store(mesh, outcome)
         settings = {**analysis_settings(self._options), "use_modifiers": False}
         match = match_of(found, reference.name, self._wish, settings)
-        branches = outcome.stored.branches
+        part_tree = outcome.stored.part_tree
         part_writer.show_registered(
-            mesh, found.labels, branches, reference.parts, match, reference_object, mode=reference.mode
+            mesh, found.labels, part_tree, reference.parts, match, reference_object, mode=reference.mode
         )
         return self._row(obj, found, warnings)
 

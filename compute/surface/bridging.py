@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .mesh import Bools, Floats, Ints, TriangleMesh
+from .ties import evened
 
 # Shells with less than this part of the area are details: eyes, teeth, buttons.
 LEAST_SHARE = 0.004
@@ -23,12 +24,12 @@ LYING = 0.04
 
 @dataclass(frozen=True, eq=False)
 class Bridges:
-    """Which shells are analyzed together, and the triangles that hold them together.
+    """Shells that are analyzed together, and the triangles that hold them together.
 
     Attributes
     ----------
     is_joined : (S,) bool
-        The largest shell, and those that prolong it.
+        Whether a shell is the largest or prolongs it.
     triangles : (n, 3) int64
         One corner on one shell, two on another.
     pier : (n,) int64
@@ -73,7 +74,7 @@ def bridge_shells(mesh: TriangleMesh) -> Bridges:
 
 
 def large_shells(mesh: TriangleMesh) -> Bools:
-    """Tell which shells (S,) are no details; the largest never is one."""
+    """Return (S,) the mask of the shells that are no details; the largest never is one."""
     area = np.bincount(mesh.component_of_triangle, mesh.areas)
     return (area >= LEAST_SHARE * area.sum()) | (np.arange(len(area)) == 0)
 
@@ -97,7 +98,7 @@ def _edge_towards(mesh: TriangleMesh, start: Ints, goal: Floats) -> tuple[Ints, 
     row = np.repeat(np.arange(len(start)), behind - first)
     side = by_tail[np.arange(len(row)) - np.repeat(np.cumsum(behind - first) - behind, behind - first)]
     distance = np.linalg.norm(mesh.vertices[ends[side]] - goal[row], axis=1)
-    nearest = np.lexsort((distance, row))
+    nearest = np.lexsort((evened(distance), row))
     side = side[nearest[np.searchsorted(row, np.arange(len(start)))]]
     return side // 2, ends[side]
 

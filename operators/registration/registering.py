@@ -103,8 +103,8 @@ def _write(
     parts = read(reference).parts
     for mesh, found in zip(meshes, registration.found, strict=True):
         _store(mesh, found.outcome)
-        match, branches = match_of(found, obj.name, tickets.wish, tickets.settings), found.outcome.stored.branches
-        part_writer.show_registered(mesh, found.labels, branches, parts, match, obj)
+        match, part_tree = match_of(found, obj.name, tickets.wish, tickets.settings), found.outcome.stored.part_tree
+        part_writer.show_registered(mesh, found.labels, part_tree, parts, match, obj)
 
 
 def _object(session_uid: int) -> bpy.types.Object:

@@ -8,7 +8,9 @@ from ...errors import LevelError
 from ...msc.merge_tree import MergeTree
 from ...msc.morse_smale import FieldTopology
 from ...surface.mesh import Bools, Floats, Ints
-from .arc_tree import NEVER, ArcTree, Features, arc_of_vertex, build_arc_tree
+from ...surface.ties import ROUNDING, evened
+from .arc_tree import ALWAYS, NEVER, ArcTree
+from .tree_building import Features, arc_of_vertex, build_arc_tree
 
 # Pairs below this fraction of the field's range are noise of the triangulation (Reuter 2009, section 4.3).
 NOISE_THRESHOLD = 1e-4
@@ -56,7 +58,7 @@ class Hierarchy:
         """Return the level that keeps the pairs of at least this fraction of the range."""
         if not threshold >= 0:
             raise LevelError(f"The threshold is a fraction of the field's range, from 0 to 1, not {threshold}.")
-        n_above = int((self.persistence >= threshold * self.value_range).sum())
+        n_above = int((self.persistence >= (threshold - ROUNDING) * self.value_range).sum())
         return min(n_above, self.n_levels - 1)
 
     def checked_level(self, level: int) -> int:
@@ -103,13 +105,21 @@ def build_hierarchy(
     n_features = int((persistence > noise).sum())
     always = np.unique(topology.essential.loops) if ends_at_handles else np.zeros(0, dtype=np.int64)
     trees, arcs = _grow_trees(sweeps, pairs[::-1][:n_features], always)
-    return Hierarchy(pairs, persistence, is_maximum, value_range, n_features + 1, trees), arcs
+    hierarchy = Hierarchy(
+        pairs=pairs,
+        persistence=persistence,
+        is_maximum=is_maximum,
+        value_range=value_range,
+        n_levels=n_features + 1,
+        trees=trees,
+    )
+    return hierarchy, arcs
 
 
 def _pairs_by_persistence(values: Floats, sweeps: list[_Sweep]) -> tuple[Ints, Floats, Bools]:
     pairs = np.concatenate([np.stack([sweep.tree.extremum, sweep.tree.saddle], axis=1) for sweep in sweeps])
     is_maximum = np.concatenate([np.full(len(sweep.tree.saddle), sweep.is_of_maxima) for sweep in sweeps])
-    persistence = np.abs(values[pairs[:, 0]] - values[pairs[:, 1]])
+    persistence = evened(np.abs(values[pairs[:, 0]] - values[pairs[:, 1]]))
     order = np.lexsort((-pairs[:, 0], persistence))
     return pairs[order], persistence[order], is_maximum[order]
 
@@ -126,8 +136,8 @@ def _grow_trees(sweeps: list[_Sweep], features: Ints, always: Ints) -> tuple[tup
     closing = np.full(n_vertices, NEVER)
     # Where pairs share a saddle, the most persistent one keeps it alive: the last one that is written stays.
     closing[features[::-1, 1]] = np.arange(len(features))[::-1]
-    closing[always] = -1
-    known = Features(part, closing, len(extrema) - len(features), len(features))
+    closing[always] = ALWAYS
+    known = Features(part, closing, n_roots=len(extrema) - len(features), n_features=len(features))
     trees, arcs = [], []
     for sweep in sweeps:
         tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, known)
