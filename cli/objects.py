@@ -8,7 +8,7 @@ import bpy
 
 from ..compute.errors import EngineError
 from ..compute.segmentation.parts.part_labels import BranchLabels
-from ..operators.mesh_state import state
+from ..operators.mesh_state import analysis_writer
 from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_request import analysis_options
 from ..operators.parts.analyze import Outcome
@@ -46,7 +46,7 @@ def engine_options(mesh: bpy.types.Mesh, options: argparse.Namespace) -> dict[st
 
 def store(mesh: bpy.types.Mesh, outcome: Outcome) -> tuple[str, ...]:
     """Put an analysis on its mesh, and return warnings."""
-    return state.store(mesh, outcome.stored, outcome.source, outcome.description)
+    return analysis_writer.store(mesh, outcome.stored, outcome.source, outcome.description)
 
 
 def row_of(obj: bpy.types.Object, labels: BranchLabels, outcome: Outcome, warnings: tuple[str, ...]) -> Report:

@@ -7,7 +7,6 @@ import time
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import bpy
 import numpy as np
@@ -15,7 +14,9 @@ import numpy as np
 from .. import compute
 from ..compute.errors import EngineError
 from ..operators.mesh_data import mesh_arrays
-from ..operators.mesh_state import registration_record, state
+from ..operators.mesh_state import registration_record
+from ..operators.mesh_state.part_table import PartTable
+from ..operators.mesh_state.state import MeshState, read
 from ..operators.messages.user_errors import Refusal
 from ..operators.outputs import part_writer
 from ..operators.parts.analyze import Outcome, outcome_of
@@ -43,7 +44,7 @@ class Reference:
         What it shows.
     prepared : compute.Reference
         What others are matched with.
-    tables : dict
+    parts : PartTable
         Names and colours of its parts.
     """
 
@@ -52,7 +53,7 @@ class Reference:
     level: int
     mode: str
     prepared: compute.Reference
-    tables: dict[str, Any]
+    parts: PartTable
 
     @property
     def highest_label(self) -> int:
@@ -106,7 +107,7 @@ class Register:
     def _divide(self, obj: bpy.types.Object, reference_object: bpy.types.Object | None = None) -> Report:
         """Give a mesh the parts of the reference, which is an object of the same file or of another."""
         reference, mesh = self._reference, obj.data
-        part_writer.refuse_foreign_results(mesh)
+        part_writer.refuse_foreign_results(read(mesh))
         analysis, outcome = _analyze(mesh, self._options)
         first_free = max(self._first_free, reference.highest_label + 1)
         found = register_analyzed(reference.prepared, analysis, outcome, self._wish, first_free)
@@ -114,8 +115,10 @@ class Register:
         warnings = store(mesh, outcome)
         settings = {**analysis_settings(self._options), "use_modifiers": False}
         match = match_of(found, reference.name, self._wish, settings)
-        registration_record.remember(mesh, reference.tables, match, reference_object)
-        part_writer.show_labels(mesh, found.labels, outcome.stored.part_tree, reference.mode)
+        part_tree = outcome.stored.part_tree
+        part_writer.show_registered(
+            mesh, found.labels, part_tree, reference.parts, match, reference_object, mode=reference.mode
+        )
         return self._row(obj, found, warnings)
 
     def _row(self, obj: bpy.types.Object, found: Found, warnings: tuple[str, ...]) -> Report:
@@ -128,10 +131,10 @@ class Register:
 def _prepare(options: argparse.Namespace) -> Reference:
     obj = chosen(formats.load(options.source), options.reference)[0]
     mesh = obj.data
-    part_writer.refuse_foreign_results(mesh)
-    registration_record.refuse_registered(mesh)
-    mode = options.mode or state.mode_of(mesh)
-    shown = _shown_level(mesh)
+    state = read(mesh)
+    part_writer.refuse_foreign_results(state)
+    registration_record.refuse_registered(state.registration)
+    mode, shown = options.mode or state.mode, _shown_level(state)
     analysis, outcome = _analyze(mesh, options)
     store(mesh, outcome)
     choice = choice_of(options) or ({"level": shown} if shown is not None else {})
@@ -140,14 +143,14 @@ def _prepare(options: argparse.Namespace) -> Reference:
     # As they are shown, with what the user corrected.
     faces = mesh_arrays.read_own_integers(mesh, part_writer.PART).astype(np.int64)
     prepared = compute.with_parts(shape, faces, labels.parts, labels.level)
-    return Reference(obj.name, outcome, labels.level, mode, prepared, registration_record.tables_of(mesh))
+    return Reference(obj.name, outcome, labels.level, mode, prepared, read(mesh).parts)
 
 
-def _shown_level(mesh: bpy.types.Mesh) -> int | None:
+def _shown_level(state: MeshState) -> int | None:
     """Return the level of a mesh that was divided before, as it was left by the user."""
     try:
-        state.load(mesh)
-        return state.summarize(mesh).level
+        _ = state.analysis
+        return state.level
     except Refusal:
         return None
 

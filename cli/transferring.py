@@ -12,7 +12,8 @@ import numpy as np
 from ..compute.errors import EngineError
 from ..compute.progress import silent
 from ..operators.mesh_data import mesh_arrays
-from ..operators.mesh_state import part_table, registration_record
+from ..operators.mesh_state import registration_record
+from ..operators.mesh_state.state import read
 from ..operators.messages.user_errors import Refusal
 from ..operators.transfer.layer_reading import Choice, read_layers
 from ..operators.transfer.layer_transferring import Body, Transferred, transfer_bodies
@@ -95,7 +96,7 @@ def _read_source(options: argparse.Namespace) -> Source:
     obj = chosen(formats.load(options.source), options.reference)[0]
     layers = read_layers(obj, Choice(frozenset(kind.upper() for kind in options.layers), "ALL", (), options.mirrored))
     highest = max((int(layer.values.max(initial=0)) for layer in layers if layer.kind == PARTS), default=0)
-    return Source(obj.name, _body(obj), layers, part_table.colours(obj.data, highest + 1))
+    return Source(obj.name, _body(obj), layers, read(obj.data).parts.colours_of(highest + 1))
 
 
 def _body(obj: bpy.types.Object) -> Body:

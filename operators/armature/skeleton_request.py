@@ -14,7 +14,9 @@ from ... import compute
 from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data import mesh_arrays
-from ..mesh_state import bone_layout, part_sides, part_table, state
+from ..mesh_state import bone_layout, part_sides
+from ..mesh_state.references import reference_of, state_of_reference
+from ..mesh_state.state import is_analyzed_for, read, remember
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal
 from ..outputs.part_writer import read_labels
@@ -81,7 +83,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and state.is_analyzed_for(cls, context)
+        return super().poll(context) and is_analyzed_for(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """From the window: what the call leaves open is taken from the panel."""
@@ -103,15 +105,16 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
         obj = context.object
         arrays, options = self.read(context)
-        labels = read_labels(obj.data)
+        labels, state = read_labels(obj.data), read(obj.data)
+        reference = state_of_reference(state)
         wish = BoneWish(
             labels,
-            state.summarize(obj.data).level,
+            state.level,
             self.bones_in_limbs,
             _other_poses(context),
-            part_sides.of_reference(obj.data),
+            {} if reference is None else reference.part_sides,
             self.needs_weights(),
-            bone_layout.of_reference(obj.data),
+            None if reference is None else reference.bone_layout,
         )
         return partial(lay_bones, arrays, options, wish), Ticket(
             obj.data.session_uid, mesh_arrays.fingerprint(obj.data)
@@ -125,8 +128,8 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
         mesh = find_mesh(ticket)
         obj = _object_of(context, mesh)
         with all_or_nothing(mesh), nothing_left_behind(context), bound_or_not(obj):
-            part_sides.remember(mesh, laid.pairing)
-            bone_layout.remember(mesh, laid.skeleton.layout)
+            sides, layout = part_sides.packed_sides(laid.pairing), bone_layout.packed_layout(laid.skeleton.layout)
+            remember(mesh, {**sides, **layout})
             self.build(context, obj, laid)
         for warning in (*laid.skeleton.warnings, *_warnings_of_reference(mesh)):
             tell(self, "WARNING", warning)
@@ -135,9 +138,9 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
 def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
     """Return what to tell of a registered mesh whose reference has no bones that it could be given."""
-    reference = bone_layout.reference_of(mesh)
+    reference = reference_of(read(mesh))
     # An object that was deleted lives on where others refer to it, but nothing can be created for it.
-    if reference is None or not reference.users_scene or bone_layout.read(reference.data) is not None:
+    if reference is None or not reference.users_scene or read(reference.data).bone_layout is not None:
         return []
     return [bone_layout.NO_BONES.format(reference.name)]
 
@@ -192,7 +195,8 @@ def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarr
 
 def part_names(mesh: bpy.types.Mesh, skeleton: compute.Skeleton) -> dict[int, str]:
     """Return the names of the parts that bones lie in."""
-    return {part: part_table.name_of(mesh, part) for part in np.unique(skeleton.part).tolist()}
+    parts = read(mesh).parts
+    return {part: parts.name_of(part) for part in np.unique(skeleton.part).tolist()}
 
 
 def _pairing(skeleton: compute.Skeleton, partner: np.ndarray | None) -> dict[int, tuple[int, int]]:

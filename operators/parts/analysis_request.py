@@ -1,14 +1,16 @@
-"""What operators that analyze the active mesh have in common: when they can, what is read, and with which settings."""
+"""Base class of the operators that analyze the active mesh: when they can, what is read, and with which settings."""
 
 from typing import Any
 
 import bpy
 
+from ... import compute
 from ..jobs import background
 from ..jobs.background import BackgroundOperator
 from ..mesh_data import mesh_arrays
 from ..messages.user_errors import can_use_active_mesh
 from .analysis_options import AnalysisOptions
+from .choice_items import ATTRIBUTE, EIGENFUNCTION, word
 
 
 class AnalysisRequest(AnalysisOptions, BackgroundOperator):
@@ -44,10 +46,15 @@ def analysis_options(
     mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str, shells: str
 ) -> dict[str, Any]:
     """Return the keyword arguments of the engine for the settings of the user."""
-    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": eigenfunction}
     return {
-        "field": mesh_arrays.read_vertex_floats(mesh, attribute) if field == "ATTRIBUTE" else choice[field],
-        "order": "auto" if order == "AUTO" else int(order),
-        "boundary": boundary.lower(),
-        "shells": shells.lower(),
+        "field": _field(mesh, field, eigenfunction, attribute),
+        "order": word(compute.ORDERS, order),
+        "boundary": word(compute.BOUNDARIES, boundary),
+        "shells": word(compute.SHELLS, shells),
     }
+
+
+def _field(mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str) -> Any:
+    if field == EIGENFUNCTION:
+        return eigenfunction
+    return mesh_arrays.read_vertex_floats(mesh, attribute) if field == ATTRIBUTE else word(compute.FIELDS, field)

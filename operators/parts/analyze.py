@@ -15,7 +15,10 @@ from ... import compute
 from ..jobs import recent_analyses
 from ..mesh_data import mesh_arrays
 from ..mesh_data.viewport import show_vertex_colours
-from ..mesh_state import function_hints, state
+from ..mesh_state import analysis_writer
+from ..mesh_state.function_hints import sentence
+from ..mesh_state.state import read
+from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal
 from ..outputs import part_writer
@@ -35,8 +38,8 @@ class Ticket:
 class Outcome:
     """What an analysis leaves for the mesh."""
 
-    stored: state.StoredAnalysis
-    source: state.BorderSource
+    stored: StoredAnalysis
+    source: BorderSource
     description: str
     warnings: tuple[str, ...]
     seconds: float
@@ -53,21 +56,20 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Outcome], Ticket]:
         mesh = context.object.data
-        part_writer.refuse_foreign_results(mesh)
+        part_writer.refuse_foreign_results(read(mesh))
         ticket = Ticket(mesh.session_uid, mesh_arrays.fingerprint(mesh))
         return partial(_analyze_and_keep, *self.read(context)), ticket
 
     def finish(self, context: bpy.types.Context, ticket: Ticket, outcome: Outcome) -> set[str]:
         mesh = find_mesh(ticket)
         with all_or_nothing(mesh):
-            told = state.store(mesh, outcome.stored, outcome.source, outcome.description)
-            function_hints.store(mesh, outcome.hints)
+            told = analysis_writer.store(mesh, outcome.stored, outcome.source, outcome.description, outcome.hints)
             labels = part_writer.segment_mesh(mesh)
         show_vertex_colours(context)
         context.window_manager.eigenparts.problem = ""
         for warning in (*outcome.warnings, *told, *labels.warnings):
             tell(self, "WARNING", warning)
-        tell(self, "INFO", _told(len(labels.parts), outcome.seconds), function_hints.sentence(mesh))
+        tell(self, "INFO", _told(len(labels.parts), outcome.seconds), sentence(read(mesh).function_hints))
         return {"FINISHED"}
 
 
@@ -93,9 +95,9 @@ def outcome_of(
     analysis: compute.Analysis, arrays: mesh_arrays.MeshArrays, options: dict[str, Any], seconds: float
 ) -> Outcome:
     """Return what of an analysis is left for the mesh; knows nothing of Blender either."""
-    stored = state.StoredAnalysis(analysis.part_tree(arrays.polygon_of_triangle), options["shells"])
+    stored = StoredAnalysis(analysis.part_tree(arrays.polygon_of_triangle), options["shells"])
     heights = compute.vertex_heights(analysis.surface, analysis.field)
-    source = state.BorderSource(analysis.profile(arrays.edges), heights)
+    source = BorderSource(analysis.profile(arrays.edges), heights)
     is_function = isinstance(options["field"], int)
     hints = compute.judge_eigenfunctions(analysis.eigenbasis) if is_function else ()
     described = _described(options)

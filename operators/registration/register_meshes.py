@@ -13,7 +13,7 @@ from ... import compute
 from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data.mesh_arrays import MeshArrays
-from ..mesh_state.state import StoredAnalysis
+from ..mesh_state.stored_analysis import StoredAnalysis
 from ..messages.user_errors import Refusal, in_name_of
 from ..parts.analyze import Outcome, outcome_of
 

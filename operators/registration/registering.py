@@ -10,7 +10,10 @@ import bpy
 from ..jobs.background import BackgroundOperator
 from ..mesh_data import mesh_arrays
 from ..mesh_data.viewport import show_vertex_colours
-from ..mesh_state import corrected_analysis, registration_record, state
+from ..mesh_state import analysis_writer, registration_record
+from ..mesh_state.corrected_analysis import corrected
+from ..mesh_state.references import registered_objects
+from ..mesh_state.state import read
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
 from ..outputs import part_writer
@@ -68,7 +71,7 @@ class Registers(BackgroundOperator):
         reference, *meshes = (find_mesh(ticket) for ticket in (tickets.reference, *tickets.targets))
         obj = _object(tickets.reference_uid)
         for mesh in (reference, *meshes):
-            part_writer.refuse_foreign_results(mesh)
+            part_writer.refuse_foreign_results(read(mesh))
         with all_or_nothing(reference, *meshes):
             _write(reference, meshes, obj, tickets, registration)
         show_vertex_colours(context)
@@ -97,11 +100,11 @@ def _write(
 ) -> None:
     _store(reference, registration.reference)
     part_writer.segment_mesh(reference, level=registration.level)
-    tables = registration_record.tables_of(reference)
+    parts = read(reference).parts
     for mesh, found in zip(meshes, registration.found, strict=True):
         _store(mesh, found.outcome)
-        registration_record.remember(mesh, tables, match_of(found, obj.name, tickets.wish, tickets.settings), obj)
-        part_writer.show_labels(mesh, found.labels, found.outcome.stored.part_tree, state.mode_of(mesh))
+        match, part_tree = match_of(found, obj.name, tickets.wish, tickets.settings), found.outcome.stored.part_tree
+        part_writer.show_registered(mesh, found.labels, part_tree, parts, match, obj)
 
 
 def _object(session_uid: int) -> bpy.types.Object:
@@ -112,7 +115,7 @@ def _object(session_uid: int) -> bpy.types.Object:
 
 
 def _refuse_registered(reference: bpy.types.Object) -> None:
-    match = registration_record.read(reference.data)
+    match = read(reference.data).match
     if match is not None:
         raise Refusal(
             f"{reference.name} shows the parts of {match.reference}; make that one the active object, or move the level"
@@ -121,36 +124,36 @@ def _refuse_registered(reference: bpy.types.Object) -> None:
 
 
 def _store(mesh: bpy.types.Mesh, outcome: Any) -> None:
-    state.store(mesh, outcome.stored, outcome.source, outcome.description)
+    analysis_writer.store(mesh, outcome.stored, outcome.source, outcome.description)
 
 
 def _read(context: bpy.types.Context, obj: bpy.types.Object, settings: dict[str, Any]) -> Subject:
     """Return what of an object goes into the job, or say by its name why nothing can."""
     with in_name_of(obj.name):
         refuse_unwritable(obj.data)
-        part_writer.refuse_foreign_results(obj.data)
+        part_writer.refuse_foreign_results(read(obj.data))
         arrays = mesh_arrays.read_object(context, obj, settings["use_modifiers"])
         options = {name: settings[name] for name in SETTINGS if name != "use_modifiers"}
         return Subject(obj.name, arrays, analysis_options(obj.data, **options))
 
 
 def _shown(reference: bpy.types.Object) -> Shown:
-    mesh = reference.data
+    state = read(reference.data)
     try:
-        return Shown(state.summarize(mesh).level, state.mode_of(mesh), corrected_analysis.load(mesh))
+        return Shown(state.level, state.mode, corrected(state))
     except Refusal:
-        if corrected_analysis.items_of(mesh):
+        if state.corrections:
             raise Refusal(CORRECTED_BEFORE.format(reference.name)) from None
-        return Shown(None, state.mode_of(mesh), None)
+        return Shown(None, state.mode, None)
 
 
 def _first_free_label(context: bpy.types.Context, reference: bpy.types.Object, targets: list[bpy.types.Object]) -> int:
     """Return a label above all that others have which are registered to the same reference."""
     labels = [
         label
-        for obj, _ in registration_record.registered_objects(context)
-        if registration_record.reference_object(obj.data) == reference and obj not in targets
-        for label, _, _ in state.summarize(obj.data).parts
+        for obj, state in registered_objects(context)
+        if state.registration.reference == reference and obj not in targets
+        for label in state.summary.shares
     ]
     return 1 + max(labels, default=0)
 

@@ -11,8 +11,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
 
 from ..jobs.background import BackgroundOperator
 from ..mesh_data import mesh_arrays
-from ..mesh_state import part_table, registration_record
-from ..mesh_state.state import is_analyzed
+from ..mesh_state import registration_record
+from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
 from ..parts.analyze import Ticket, find_mesh
@@ -218,7 +218,7 @@ def body_of(
 
 def _wishes(mesh: bpy.types.Mesh, source: bpy.types.Object) -> tuple[dict[int, int], int]:
     """Return the signs and the alternative that the user chose if the mesh is registered to the source."""
-    match = registration_record.read(mesh)
+    match = read(mesh).match
     if match is None or match.reference != source.name:
         return {}, 0
     return {int(number): sign for number, sign in match.flips.items()}, match.alternative
@@ -226,7 +226,7 @@ def _wishes(mesh: bpy.types.Mesh, source: bpy.types.Object) -> tuple[dict[int, i
 
 def _part_colours(mesh: bpy.types.Mesh, given: list[Layer]) -> np.ndarray:
     highest = max((int(layer.values.max(initial=0)) for layer in given if layer.kind == PARTS), default=0)
-    return part_table.colours(mesh, highest + 1)
+    return read(mesh).parts.colours_of(highest + 1)
 
 
 def _find(session_uid: int, ticket: Ticket) -> bpy.types.Object:
