@@ -4,11 +4,11 @@ import argparse
 import shlex
 from pathlib import Path
 
+from ..operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS_OF_FILES
 from .formats import FORMATS
 
 EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
-# Materials are not among them: they are no numbers that could go from file to file.
-LAYERS = ("groups", "shape_keys", "uvs", "colors", "attributes", "faces", "parts")
+LAYERS = tuple(kind.lower() for kind in LAYERS_OF_FILES)
 # Seconds of the longest time limit: a week.
 LONGEST = 604_800
 FILE_KINDS = f"Formats: {' '.join(FORMATS)}."
@@ -67,7 +67,7 @@ def _add_transfer(commands: Commands) -> None:
         "--layers",
         metavar="KINDS",
         type=_layers,
-        default=["groups"],
+        default=[kind.lower() for kind in DEFAULT_LAYERS],
         help=f"what is transferred, with commas between: {', '.join(LAYERS)}; groups if not given",
     )
     _add_execution(command)

@@ -17,7 +17,7 @@ MAY_IMPORT = {
     "ui": {
         *("operators.mesh_state.state", "operators.mesh_state.palette", "operators.mesh_state.registration_record"),
         *("operators.mesh_state.function_hints", "operators.messages", "operators.parts.border_lines"),
-        "operators.parts.part_outline",
+        *("operators.parts.part_outline", "operators.mesh_data.selected_meshes"),
     },
 }
 OUTSIDE = {

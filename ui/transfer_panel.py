@@ -2,7 +2,8 @@
 
 import bpy
 
-from .tab import EigenpartsPanel, draw_direction, main_row, other_meshes
+from ..operators.mesh_data.selected_meshes import other_meshes
+from .tab import EigenpartsPanel, draw_direction, main_row
 from .transfer_presets import EIGENPARTS_PT_transfer_presets
 
 

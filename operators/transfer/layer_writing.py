@@ -30,6 +30,9 @@ class Mix:
     mask: str
 
 
+WHOLE = Mix(1.0, "")
+
+
 def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> None:
     """Raise a Refusal that names the object if one of the layers cannot be written to it."""
     with in_name_of(obj.name):

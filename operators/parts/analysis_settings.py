@@ -1,0 +1,76 @@
+"""Settings of an analysis as values, whether they come from a panel, a script, a file or the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import bpy
+
+from ..mesh_data import mesh_arrays
+
+
+@dataclass(frozen=True)
+class AnalysisSettings:
+    """What an analysis is asked for, named as the properties of the operators.
+
+    Attributes
+    ----------
+    field : str
+        "DIFFUSION", "EIGENFUNCTION" or "ATTRIBUTE".
+    eigenfunction : int
+        Number of the eigenfunction, from 1.
+    attribute : str
+        Name of the attribute with the values of the field.
+    order, boundary, shells : str
+        As the properties of ``AnalysisOptions``.
+    use_modifiers : bool
+        Whether the mesh is read as its modifiers leave it.
+    """
+
+    field: str = "DIFFUSION"
+    eigenfunction: int = 1
+    attribute: str = ""
+    order: str = "AUTO"
+    boundary: str = "NEUMANN"
+    shells: str = "BRIDGED"
+    use_modifiers: bool = False
+
+
+SETTINGS = tuple(field.name for field in fields(AnalysisSettings))
+
+
+@dataclass(frozen=True, eq=False)
+class AnalysisInput:
+    """A mesh as it was read, and what its analysis is asked for.
+
+    Attributes
+    ----------
+    name : str
+        Of the object, for the user.
+    arrays : MeshArrays
+    options : dict
+        Keyword arguments of the engine's analysis.
+    """
+
+    name: str
+    arrays: mesh_arrays.MeshArrays
+    options: dict[str, Any]
+
+
+def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:
+    """Return the mesh of an object, posed if that is wanted, and the keyword arguments of the engine."""
+    arrays = mesh_arrays.read_object(context, obj, settings.use_modifiers)
+    return AnalysisInput(obj.name, arrays, engine_options(obj.data, settings))
+
+
+def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> dict[str, Any]:
+    """Return the keyword arguments of the engine for the settings of the user."""
+    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": settings.eigenfunction}
+    is_own = settings.field == "ATTRIBUTE"
+    return {
+        "field": mesh_arrays.read_vertex_floats(mesh, settings.attribute) if is_own else choice[settings.field],
+        "order": "auto" if settings.order == "AUTO" else int(settings.order),
+        "boundary": settings.boundary.lower(),
+        "shells": settings.shells.lower(),
+    }
