@@ -163,6 +163,7 @@ def register_all(
         _recall_shape(given, _step(progress, k, n_steps)) for k, given in enumerate((reference, *targets))
     )
     prepared = prepare_reference(reference.name, source, shown)
+    first_free = max(first_free, prepared.highest_label + 1)
     shapes: list[RegisteredShape] = []
     for number, (given, target) in enumerate(zip(targets, others, strict=True)):
         named = compute.naming(_step(progress, len(targets) + 1 + number, n_steps), given.name)
