@@ -67,15 +67,15 @@ def torus(n_around: int = 24, n_through: int = 12, radius: float = 3.0, thicknes
     return TriangleMesh(points.reshape(-1, 3), triangles)
 
 
-def star(n_arms: int = 5, n_subdivisions: int = 4, length: float = 1.5) -> TriangleMesh:
-    """Return a sphere with tapering arms in the plane z = 0, the first along x; all arms a little different."""
+def star(n_arms: int = 5, n_subdivisions: int = 4, length: float = 1.5, growth: float = 0.1) -> TriangleMesh:
+    """Return a sphere with tapering arms in the plane z = 0, the first along x, each longer than the one before."""
     sphere = icosphere(n_subdivisions)
     x, y, _ = sphere.vertices.T
     radius = np.ones(len(x))
     for arm in range(n_arms):
         angle = 2 * np.pi * arm / n_arms
         along = x * np.cos(angle) + y * np.sin(angle)
-        radius += length * (1 + 0.1 * arm) * np.exp(-12 * (1 - along))
+        radius += length * (1 + growth * arm) * np.exp(-12 * (1 - along))
     return TriangleMesh(sphere.vertices * radius[:, None], sphere.triangles)
 
 

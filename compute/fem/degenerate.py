@@ -5,8 +5,9 @@ from scipy.sparse import csr_array
 
 from ..surface.mesh import Floats
 
-# Eigenvalues closer than this, relatively, count as one: the solver cannot tell their functions apart.
-DEGENERATE = 1e-8
+# Eigenvalues closer than this, relatively, count as one: the solver cannot tell their functions apart (its tolerance is
+# the same), and rounding mixes them.
+DEGENERATE = 1e-6
 
 # A function whose third moment is below this part of the absolute one looks the same with both signs.
 SYMMETRIC = 1e-3

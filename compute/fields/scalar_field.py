@@ -11,6 +11,7 @@ from ..fem.eigenbasis import Eigenbasis
 from ..fem.lagrange import reference_element
 from ..surface.cleaning import Surface
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import evened
 
 DIFFUSION = "diffusion"
 # Functions used by the diffusion field, at the most.
@@ -94,6 +95,7 @@ def diffusion_field(basis: Eigenbasis) -> ScalarField:
     mean = weights.sum() / basis.mass.sum()
     values = np.zeros(len(heat))
     values[used] = np.log(np.maximum(heat[used] / mean, LEAST_HEAT))
+    values[used] = _even_field(values[used])
     return ScalarField(values, refined_net(basis), DIFFUSION, minima_are_features=False, least_range=FLAT_DIFFUSION)
 
 
@@ -102,7 +104,8 @@ def eigenfunction_field(basis: Eigenbasis, number: int) -> ScalarField:
     n_functions = basis.functions.shape[1]
     if not 1 <= number <= n_functions:
         raise FieldError(f"Eigenfunction {number} does not exist; there are 1 to {n_functions}.")
-    return ScalarField(basis.functions[:, number - 1], refined_net(basis), f"eigenfunction {number}", True)
+    values = _even_field(basis.functions[:, number - 1])
+    return ScalarField(values, refined_net(basis), f"eigenfunction {number}", True)
 
 
 def user_field(surface: Surface, values: ArrayLike) -> ScalarField:
@@ -120,8 +123,16 @@ def user_field(surface: Surface, values: ArrayLike) -> ScalarField:
     if not np.isfinite(numbers[surface.mesh.triangles]).all():
         raise FieldError("The field has values that are not finite numbers.")
     mesh = surface.mesh
+    used = np.unique(mesh.triangles)
+    numbers = numbers.copy()
+    numbers[used] = _even_field(numbers[used])
     net = Net(mesh.vertices, mesh.triangles, np.arange(len(mesh.triangles)), mesh.areas)
     return ScalarField(numbers, net, "user", True)
+
+
+def _even_field(values: Floats) -> Floats:
+    """Return values that are equal where symmetry makes them so, so that the order of their vertices decides."""
+    return evened(values, float(np.ptp(values)))
 
 
 def refined_net(basis: Eigenbasis) -> Net:

@@ -12,6 +12,7 @@ from ..fem.space import function_space
 from ..progress import Progress, section
 from ..surface.cleaning import Surface
 from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
+from ..surface.ties import evened
 from .field_choice import ChosenField, choose_field, resolved_order
 from .scalar_field import Net, ScalarField, net_of_elements
 
@@ -51,7 +52,7 @@ def choose_fields(
             found.append(result)
     if not found:
         raise problems[0] if problems else MeshError("No loose part has enough faces to be divided by itself.")
-    joint = replace(found[0].field, values=values, net=net, least_range=0.0)
+    joint = replace(found[0].field, values=evened(values), net=net, least_range=0.0)
     slow = (chosen.warning,) if has_elements and chosen.warning else ()
     return ChosenField(joint, None, (*slow, *_told(problems)))
 

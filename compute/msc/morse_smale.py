@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import ROUNDING
 from .cancellation import extended_lines
 from .cells import Cells, cells_of
 from .cohomology import cocycles_of
@@ -170,7 +171,9 @@ class MorseSmaleComplex:
 
     def above(self, persistence: float) -> "MorseSmaleComplex":
         """Return the complex with the pairs of at least this persistence, in the unit of the field."""
-        return self.simplified(int((self.pairing.persistence >= persistence).sum()))
+        all_of_them = self.pairing.persistence
+        margin = ROUNDING * all_of_them.max(initial=0.0)
+        return self.simplified(int((all_of_them >= persistence - margin).sum()))
 
 
 def _without_pairs(points: CriticalPoints, pairing: Pairing, n_cancelled: int) -> CriticalPoints:

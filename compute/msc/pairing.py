@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..surface.mesh import Bools, Floats, Ints
+from ..surface.ties import evened
 from .merge_tree import MergeTree, ends_of_paths
 from .persistence import EssentialClasses
 
@@ -49,7 +50,7 @@ def pairing_of(values: Floats, minima: MergeTree, maxima: MergeTree, essential: 
     saddle = np.concatenate([minima.saddle, maxima.saddle])
     elder = np.concatenate([minima.elder, maxima.elder])
     is_maximum = np.repeat([False, True], [len(minima.extremum), len(maxima.extremum)])
-    persistence = np.abs(values[extremum] - values[saddle])
+    persistence = evened(np.abs(values[extremum] - values[saddle]))
     # Between equal values the order of the vertices decides which pair is nested in which.
     steps = np.abs(minima.rank[extremum] - minima.rank[saddle])
     order = np.lexsort((steps, persistence))

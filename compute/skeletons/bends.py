@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import first_least
 
 # Points a limb is looked at in.
 N_POINTS = 48
@@ -89,7 +90,7 @@ def _necks(curve: Curve, start: int, end: int) -> Ints:
     radius = curve.radius[start : end + 1]
     before, after = np.maximum.accumulate(radius), np.maximum.accumulate(radius[::-1])[::-1]
     depth = radius / np.minimum(before, after)
-    thinnest = int(depth.argmin())
+    thinnest = int(first_least(depth))
     if not depth[thinnest] < NECK or _is_near(curve, start, start + thinnest, end):
         return np.zeros(0, dtype=np.int64)
     neck = start + thinnest
@@ -104,7 +105,7 @@ def _bends(curve: Curve, start: int, end: int) -> Ints:
     least[0] = 0.0
     for point in range(1, n):
         total = least[:point] + cost[:point, point] + BEND
-        before[point] = total.argmin()
+        before[point] = first_least(total)
         least[point] = total[before[point]]
     found = [n - 1]
     while found[-1] > 0:

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from ..analysis import Analysis
 from ..surface.mesh import Floats, Ints, TriangleMesh
+from ..surface.ties import ROUNDING
 from .embedding import Skeleton
 
 # Width of the passage from bone to bone in radii of the limb; it is also kept shorter than the bone.
@@ -80,9 +81,11 @@ def _system(mesh: TriangleMesh, conductivity: Floats) -> tuple[csc_array, Floats
 def _few(weights: Floats) -> Floats:
     """Return the largest weights of each row only, as shares of their sum."""
     if weights.shape[1] > MOST_BONES:
-        dropped = np.argpartition(weights, -MOST_BONES, axis=1)[:, :-MOST_BONES]
-        weights = weights.copy()
-        np.put_along_axis(weights, dropped, 0.0, axis=1)
+        least = np.partition(weights, -MOST_BONES, axis=1)[:, -MOST_BONES, None]
+        is_larger = weights > least + ROUNDING
+        is_tied = ~is_larger & (weights >= least - ROUNDING)
+        n_left = MOST_BONES - is_larger.sum(axis=1, keepdims=True)
+        weights = np.where(is_larger | (is_tied & (is_tied.cumsum(axis=1) <= n_left)), weights, 0.0)
     weights = np.where(weights < LEAST_WEIGHT, 0.0, weights)
     return weights / weights.sum(axis=1, keepdims=True)
 

@@ -12,6 +12,7 @@ from ..errors import LevelError, MeshError
 from ..msc.reeb import ReebGraph
 from ..segmentation.parts.part_labels import BODY
 from ..surface.mesh import Bools, Floats, Ints
+from ..surface.ties import CHOICE, first_largest, first_nearest
 from .branching import Chain, chains_between
 from .hubs import Hub, gathered_hubs, hub_numbers, joined_hubs
 from .interior import Interior
@@ -195,7 +196,8 @@ def _plan(
         root = known if known >= 0 else root
     parts = [_part_of_hub(hub, graph, slices) for hub in hubs]
     order, closes_loop = _from_root(chains, hubs, root)
-    nearest = cKDTree(analysis.mesh.vertices).query(analysis.net.positions[graph.vertex])[1]
+    vertices = cKDTree(analysis.mesh.vertices)
+    nearest = first_nearest(vertices, analysis.net.positions[graph.vertex])
     number = hub_numbers(hubs)
     ends, centres = [], centres.copy()
     for chain in order:
@@ -206,7 +208,7 @@ def _plan(
             crown = hidden_crown(chain, slices, centres[0], at_rest)
             tip, last = nearest[chain.end], chain.slices[-1]
             if crown is not None:
-                tip, last = cKDTree(analysis.mesh.vertices).query(at_rest[crown])[1], widest_slice(chain, slices)
+                tip, last = first_nearest(vertices, at_rest[crown, None])[0], widest_slice(chain, slices)
             place, part = reaching(centres[:, last], poses[:, tip], interior), -1
             late = chain.slices[1 + np.flatnonzero(chain.slices == last)[0] :]
             way = np.linspace(0, 1, len(late) + 2)[1:-1, None]
@@ -234,7 +236,7 @@ def _with_middle(
     if not hubs and len(chains) == 1:
         (chain,) = chains
         length = np.cumsum(slices.length[chain.slices])
-        half = min(int(np.searchsorted(length, length[-1] / 2)), len(length) - 1)
+        half = min(int(np.searchsorted(length, (0.5 - CHOICE) * length[-1])), len(length) - 1)
         middle = chain.slices[half]
         hubs = [Hub(frozenset([MIDDLE]), centres[:, middle], float(slices.radius[middle]))]
         chains = [
@@ -258,13 +260,11 @@ def _is_inside(chain: Chain, number: Mapping[int, int]) -> bool:
 def _root(chains: list[Chain], hubs: list[Hub], slices: Slices) -> int:
     """Return the hub farthest from the bluntest limb: the hips, as that limb is the head in most cases."""
     number = hub_numbers(hubs)
-    blunt = max(
-        (chain for chain in chains if chain.end not in number),
-        key=lambda chain: float(np.median(slices.radius[chain.slices]) / slices.length[chain.slices].sum()),
-        default=chains[0],
-    )
+    free = [chain for chain in chains if chain.end not in number] or chains[:1]
+    bluntness = [np.median(slices.radius[chain.slices]) / slices.length[chain.slices].sum() for chain in free]
+    blunt = free[first_largest(np.array(bluntness))]
     head = hubs[number.get(blunt.start, -1)].places[0]
-    return int(np.argmax([np.linalg.norm(hub.places[0] - head) for hub in hubs]))
+    return int(first_largest(np.array([np.linalg.norm(hub.places[0] - head) for hub in hubs])))
 
 
 def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:
@@ -272,7 +272,7 @@ def _part_of_hub(hub: Hub, graph: ReebGraph, slices: Slices) -> int:
     arcs = enumerate(graph.arcs.tolist())
     below = [slices.of_arc(arc) for arc, (low, high) in arcs if high in hub.nodes and low not in hub.nodes]
     tops = [int(of_arc[-1]) for of_arc in below if len(of_arc)]
-    return int(slices.part[max(tops, key=lambda top: slices.girth[top])]) if tops else BODY
+    return int(slices.part[tops[first_largest(slices.girth[tops])]]) if tops else BODY
 
 
 def _from_root(chains: list[Chain], hubs: list[Hub], root: int) -> tuple[list[Chain], list[bool]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import first_least
 from .branching import Chain
 from .slices import Slices
 
@@ -75,7 +76,7 @@ def _gathered(alone: list[Hub], inner: Ints) -> Ints:
         closeness = distance / radius[ends].max(axis=1, initial=0)
         if not len(ends) or closeness.min() >= CLOSE:
             return hub
-        first, second = ends[closeness.argmin()]
+        first, second = ends[first_least(closeness)]
         places[first] = np.average(places[[first, second]], axis=0, weights=n_nodes[[first, second]])
         radius[first], n_nodes[first] = max(radius[first], radius[second]), n_nodes[first] + n_nodes[second]
         hub[hub == second] = first

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from ..surface.cleaning import Surface
 from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
 from ..surface.orientation import wrongly_wound
+from ..surface.ties import CHOICE, first_nearest
 
 # A point is pulled inside when it lies nearer to the surface than this fraction of the flesh's half thickness there.
 SHALLOW = 0.2
@@ -50,8 +51,12 @@ class Interior:
         No deeper than ``radius`` (p,), which also keeps them inside where the surface is open.
         """
         tree = cKDTree(self.points)
-        distance, skin = tree.query(points)
-        depth = np.where(self._is_behind(points, skin), distance, -distance)
+        skin = first_nearest(tree, points)
+        offset = points - self.points[skin]
+        distance = np.linalg.norm(offset, axis=1)
+        # A point within a flat side is not behind it.
+        is_behind = np.einsum("pj,pj->p", offset, self.normals[skin]) < -CHOICE * distance
+        depth = np.where(is_behind, distance, -distance)
         centre, fitting = self._fitting_balls(tree, skin, radius)
         return np.where((depth < SHALLOW * fitting)[:, None], centre, points)
 
@@ -61,11 +66,8 @@ class Interior:
         outside = np.flatnonzero(~self.holds(pulled))
         if len(outside):
             tree = cKDTree(self.points)
-            pulled[outside] = self._fitting_balls(tree, tree.query(pulled[outside])[1], radius[outside])[0]
+            pulled[outside] = self._fitting_balls(tree, first_nearest(tree, pulled[outside]), radius[outside])[0]
         return pulled
-
-    def _is_behind(self, points: Floats, skin: Ints) -> Bools:
-        return np.einsum("pj,pj->p", points - self.points[skin], self.normals[skin]) < 0
 
     def _fitting_balls(self, tree: cKDTree, skin: Ints, largest: Floats) -> tuple[Floats, Floats]:
         """Return the largest balls that touch the surface from inside at given vertices and hold no others.

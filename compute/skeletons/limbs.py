@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import CHOICE, first_largest
 from .bends import Curve, joints_along, resampled
 from .branching import Chain
 from .slices import Slices
@@ -113,7 +114,7 @@ def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_piec
     places = np.concatenate([ends.places[:, :1], centres[:, chain.slices], ends.places[:, 1:]], axis=1)
     curve, length = resampled(places, np.concatenate([radius[:1], radius, radius[-1:]]))
     last = len(curve.along) - 1
-    point = np.minimum(np.searchsorted(curve.along, length), last)
+    point = np.minimum(np.searchsorted(curve.along, (1 - CHOICE) * length), last)
     borders = _borders(chain, ends, slices, places, radius)
     at_borders = np.setdiff1d(point[borders], [0, last])
     joints = joints_along(curve, np.concatenate([[0], at_borders, [last]]), n_pieces)
@@ -183,7 +184,7 @@ def _main_parts(bone: Ints, part: Ints, length: Floats, n_bones: int, ends: Ends
     """Return the part that most of each bone's slices are in; bones without slices lie in the hub next to them."""
     n_parts = int(part.max()) + 1
     shares = np.bincount(bone * n_parts + part, length, n_bones * n_parts).reshape(n_bones, n_parts)
-    main = shares.argmax(axis=1)
+    main = first_largest(shares)
     empty = np.flatnonzero(shares.sum(axis=1) == 0)
     main[empty] = np.where(empty < np.min(bone), ends.parts[0], ends.parts[1])
     return main

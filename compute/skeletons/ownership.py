@@ -5,6 +5,7 @@ from scipy.spatial import cKDTree
 
 from ..analysis import Analysis
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import first_least
 from .slices import Slices
 
 
@@ -52,7 +53,7 @@ def _nearest_bone(points: Floats, part_of_point: Ints, joints: Floats, parent: I
         from_start = points[rows, None] - start[own]
         share = np.clip(np.einsum("pbj,bj->pb", from_start, along[own]) / square[own], 0, 1)
         distance = np.linalg.norm(from_start - share[:, :, None] * along[own], axis=2)
-        owner[rows] = bones[own[distance.argmin(axis=1)]]
+        owner[rows] = bones[own[first_least(distance)]]
     return owner
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import ROUNDING, evened, first_largest
 
 # Slices of an arc, at the most, and net triangles in a slice, at the least: thinner ones have no reliable centre.
 MOST_SLICES = 48
@@ -111,14 +112,18 @@ def _means_of_corners(values: Floats) -> Floats:
 
 def _equal_areas(arc: Ints, n_arcs: int, height: Floats, area: Floats) -> tuple[Ints, Ints, Floats]:
     """Return where the slices of each arc begin, the slice of each triangle, and where each slice is lowest."""
-    order = np.lexsort((height, arc))
+    # Triangles of one ring of a regular limb are equally high: they stay in one slice, whatever their order.
+    level = evened(height, float(np.ptp(height)))
+    order = np.lexsort((level, arc))
     count = np.bincount(arc, minlength=n_arcs)
     n_slices = np.clip(count // LEAST_TRIANGLES, 1, MOST_SLICES)
     arc, total = arc[order], np.bincount(arc, area, n_arcs)
     below = np.cumsum(area[order]) - area[order]
     start = np.append(below, 0.0)[np.cumsum(count) - count]
+    is_higher = np.append(True, (np.diff(level[order]) != 0) | (np.diff(arc) != 0))
+    below = below[is_higher][np.cumsum(is_higher) - 1]
     share = (below - start[arc]) / np.maximum(total[arc], np.finfo(float).tiny)
-    place = np.clip((share * n_slices[arc]).astype(np.int64), 0, n_slices[arc] - 1)
+    place = np.clip(((share + ROUNDING) * n_slices[arc]).astype(np.int64), 0, n_slices[arc] - 1)
     # A single large triangle can reach over several slices: those behind it are left out.
     keys, first, slice_in_order = np.unique(arc * MOST_SLICES + place, return_index=True, return_inverse=True)
     of_triangle = np.empty(len(arc), dtype=np.int64)
@@ -151,7 +156,7 @@ def _main_labels(of_triangle: Ints, label: NDArray[np.int32], area: Floats) -> I
     n_labels = int(label.max(initial=0)) + 1
     n_slices = int(of_triangle.max()) + 1
     shares = np.bincount(of_triangle * n_labels + label, area, n_slices * n_labels)
-    return shares.reshape(n_slices, n_labels).argmax(axis=1)
+    return first_largest(shares.reshape(n_slices, n_labels))
 
 
 def _barycentric(corners: Floats, points: Floats) -> Floats:

@@ -10,6 +10,7 @@ from ..registration.dense.matched_points import source_points
 from ..registration.eigenfunctions.matching import match
 from ..registration.eigenfunctions.spectral_shape import spectral_shape
 from ..surface.mesh import Floats, Ints
+from ..surface.ties import first_largest
 from .embedding import Skeleton
 
 # A reflected shape lies on itself if its points are this near to others, in units of the root of the area.
@@ -120,7 +121,7 @@ def _partners(landing: Ints, corners: Ints, input_triangle: Ints, labels: NDArra
     of_point[corners.ravel()] = np.repeat(label, 3)
     votes = np.bincount(np.repeat(label, 3) * n_labels + of_point[landing[corners.ravel()]], minlength=n_labels**2)
     share = votes.reshape(n_labels, n_labels) / np.maximum(np.bincount(label, minlength=n_labels) * 3, 1)[:, None]
-    best = share.argmax(axis=1)
+    best = first_largest(share)
     number = np.arange(n_labels)
     is_mutual = (best[best] == number) & (share[number, best] >= LEAST_SHARE)
     return np.where(is_mutual, best, number)

@@ -5,6 +5,7 @@ import numpy as np
 from ..analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats
+from ..surface.ties import evened, first_largest
 from .branching import Chain
 from .interior import Interior
 from .layout import BoneLayout
@@ -22,7 +23,7 @@ def tips_of_parts(analysis: Analysis, graph: ReebGraph, slices: Slices, layout: 
     is_upper[graph.arcs[:, 1]] = True
     leaves = np.flatnonzero((graph.degree == 1) & (is_upper | analysis.field.minima_are_features))
     arc_of = {node: arc for arc, ends in enumerate(graph.arcs.tolist()) for node in ends}
-    height = np.abs(analysis.field.values[graph.vertex] - np.median(analysis.field.values))
+    height = evened(np.abs(analysis.field.values[graph.vertex] - np.median(analysis.field.values)))
     ranked = sorted(leaves.tolist(), key=lambda leaf: -height[leaf])
     tips: dict[int, int] = {}
     for leaf in ranked:
@@ -45,7 +46,7 @@ def hidden_crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) 
     own = np.flatnonzero(is_own[slices.of_triangle])
     line = centres[chain.slices]
     distance = np.linalg.norm(places[own] - line[0], axis=1)
-    farthest = int(distance.argmax())
+    farthest = int(first_largest(distance))
     reach = np.linalg.norm(line - line[0], axis=1).max()
     return int(own[farthest]) if reach < CAVITY * distance[farthest] else None
 
@@ -53,7 +54,7 @@ def hidden_crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) 
 def widest_slice(chain: Chain, slices: Slices) -> int:
     """Return the widest slice in the outer half of a chain: behind it the level sets close."""
     outer = chain.slices[len(chain.slices) // 2 :]
-    return int(outer[slices.girth[outer].argmax()])
+    return int(outer[first_largest(slices.girth[outer])])
 
 
 def reaching(last: Floats, extremum: Floats, interior: Interior) -> Floats:

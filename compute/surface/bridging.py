@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .mesh import Bools, Floats, Ints, TriangleMesh
+from .ties import evened
 
 # Shells with less than this part of the area are details: eyes, teeth, buttons.
 LEAST_SHARE = 0.004
@@ -97,7 +98,7 @@ def _edge_towards(mesh: TriangleMesh, start: Ints, goal: Floats) -> tuple[Ints, 
     row = np.repeat(np.arange(len(start)), behind - first)
     side = by_tail[np.arange(len(row)) - np.repeat(np.cumsum(behind - first) - behind, behind - first)]
     distance = np.linalg.norm(mesh.vertices[ends[side]] - goal[row], axis=1)
-    nearest = np.lexsort((distance, row))
+    nearest = np.lexsort((evened(distance), row))
     side = side[nearest[np.searchsorted(row, np.arange(len(start)))]]
     return side // 2, ends[side]
 

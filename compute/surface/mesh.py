@@ -10,6 +10,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import MeshError
+from .ties import evened
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -96,7 +97,7 @@ class TriangleMesh:
         graph = coo_array((np.ones(len(sides), dtype=bool), (sides[:, 0], sides[:, 1])), shape=(n_vertices, n_vertices))
         label = connected_components(graph, directed=False)[1][corners[:, 0]]
         _, label = np.unique(label, return_inverse=True)
-        by_area = np.argsort(-np.bincount(label, self.areas), kind="stable")
+        by_area = np.argsort(-evened(np.bincount(label, self.areas)), kind="stable")
         return np.argsort(by_area, kind="stable")[label]
 
     @property

@@ -18,6 +18,7 @@ from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.orientation import reversed_where, wrongly_wound
+from ...surface.ties import first_largest
 from ..eigenfunctions.matching import Matching, match_surfaces
 from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points, spectral_shape
 from ..eigenfunctions.zoomout import nearest_rows
@@ -318,7 +319,7 @@ def _wound(surface: Surface) -> Ints:
 
 
 def _nearest_corner(points: SurfacePoints, triangles: Ints) -> Ints:
-    return triangles[points.triangles, points.barycentric.argmax(axis=1)]
+    return triangles[points.triangles, first_largest(points.barycentric)]
 
 
 def _by_faces(pair: _Pair, image: Ints, is_analyzed: Bools) -> Correspondence:

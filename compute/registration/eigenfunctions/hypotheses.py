@@ -13,6 +13,7 @@ import numpy as np
 
 from ...progress import Progress, section, silent
 from ...surface.mesh import Floats, Ints
+from ...surface.ties import evened
 from .moments import Moments, agreement, agreement_gradient
 from .spectral_shape import SpectralShape
 
@@ -131,7 +132,7 @@ def find_hypotheses(
     found = seeds.take(_distinct(seeds.maps, np.arange(len(seeds)), effort.n_seeds))
     for level, step in zip(levels[1:], steps[1:], strict=True):
         found = _extend(found, _Scene(source, target, level), effort, signs, step)
-    return found.take(np.argsort(-found.total, kind="stable"))
+    return found.take(np.argsort(-evened(found.total), kind="stable"))
 
 
 class _Scene:
@@ -166,7 +167,7 @@ def _beam(
     for function in range(n_known, scene.level):
         progress((function - n_known) / (scene.level - n_known), SEARCHING)
         places, sign = _branch(places, sign, len(scene.target_values), signs.get(function))
-        order = np.argsort(-_score(places, sign, scene, moments), kind="stable")[:width]
+        order = np.argsort(-evened(_score(places, sign, scene, moments)), kind="stable")[:width]
         places, sign = places[order], sign[order]
     return places, sign
 
@@ -175,7 +176,8 @@ def _branch(places: Ints, sign: Floats, n_places: int, given_sign: int | None) -
     """Extend every assignment by the next function in all ways: each free place near by, each sign."""
     function = places.shape[1]
     near = np.arange(max(0, function - WINDOW), min(n_places, function + WINDOW + 1))
-    choices = np.array([-1.0, 1.0]) if given_sign is None else np.array([float(given_sign)])
+    # Between equally good assignments the earlier one is taken: rather one that keeps signs.
+    choices = np.array([1.0, -1.0]) if given_sign is None else np.array([float(given_sign)])
     step_place, step_sign = np.repeat(near, len(choices)), np.tile(choices, len(near))
     n_before, n_steps = len(places), len(step_place)
     is_free = (np.repeat(places, n_steps, axis=0) != np.tile(step_place, n_before)[:, None]).all(axis=1)
@@ -268,4 +270,4 @@ def _limit_per_parent(polished: Hypotheses, parent: Ints, n_branches: int) -> In
     """Return distinct hypotheses, best first, at most a few of one parent."""
     order = _distinct(polished.maps, np.arange(len(polished)), len(polished))
     chosen = np.concatenate([order[parent[order] == number][:n_branches] for number in np.unique(parent)])
-    return chosen[np.argsort(-polished.total[chosen], kind="stable")]
+    return chosen[np.argsort(-evened(polished.total[chosen]), kind="stable")]

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints
+from ...surface.ties import evened
 from .hypotheses import Hypotheses, nearest_orthogonal, spectrum_of
 from .moments import agreement
 from .spectral_shape import SpectralShape
@@ -74,15 +75,23 @@ class Candidate:
         return self.commutation * moments * geometry
 
     @property
-    def rank(self) -> tuple[bool, float]:
-        """What candidates are sorted by: torn maps last."""
-        return self.orientation < LEAST_ORIENTED, self.cost
+    def is_torn(self) -> bool:
+        """Whether the map is torn or inside out."""
+        return self.orientation < LEAST_ORIENTED
 
 
-def distinct_candidates(ranked: Sequence[Candidate], n_wanted: int) -> list[Candidate]:
+def ranked(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return candidates, the least costly first and torn maps last; of equally good ones the earlier first."""
+    cost = evened(np.array([candidate.cost for candidate in candidates]))
+    is_torn = np.array([candidate.is_torn for candidate in candidates])
+    order = np.lexsort((cost, is_torn))
+    return [candidates[number] for number in order.tolist()]
+
+
+def distinct_candidates(best_first: Sequence[Candidate], n_wanted: int) -> list[Candidate]:
     """Return the first few candidates that differ from all better ones."""
     kept: list[Candidate] = []
-    for candidate in ranked:
+    for candidate in best_first:
         if len(kept) == n_wanted:
             break
         if all(_difference(candidate, better) > SAME_MAP for better in kept):
@@ -92,14 +101,14 @@ def distinct_candidates(ranked: Sequence[Candidate], n_wanted: int) -> list[Cand
 
 def confidence_of(candidate: Candidate, rivals: Sequence[Candidate]) -> float:
     """Return 0 to 1: low where a candidate is costly, or where a different one is as good."""
-    others = [rival.cost for rival in rivals if _difference(candidate, rival) > SAME_MAP and not rival.rank[0]]
+    others = [rival.cost for rival in rivals if _difference(candidate, rival) > SAME_MAP and not rival.is_torn]
     tie = min((candidate.cost + LEAST_COST) / (min(others, default=np.inf) + LEAST_COST), 1.0)
     return fit_of(candidate) * (1 - tie)
 
 
 def fit_of(candidate: Candidate) -> float:
     """Return 0 to 1: low where a candidate is costly, whatever else there is."""
-    return 0.0 if candidate.orientation < LEAST_ORIENTED else 1 / (1 + (candidate.cost / DOUBTFUL_COST) ** 2)
+    return 0.0 if candidate.is_torn else 1 / (1 + (candidate.cost / DOUBTFUL_COST) ** 2)
 
 
 def _difference(one: Candidate, other: Candidate) -> float:

@@ -12,7 +12,7 @@ from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from .hypotheses import Effort, find_hypotheses, spectrum_of
-from .map_scoring import Candidate, Judge, confidence_of, distinct_candidates, fit_of
+from .map_scoring import Candidate, Judge, confidence_of, distinct_candidates, fit_of, ranked
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded
 
@@ -168,15 +168,15 @@ def _ranked_candidates(
 ) -> list[Candidate]:
     """Return judged hypotheses, best first; the search is widened until the best of them is sure."""
     spectra = spectrum_of(source), spectrum_of(target)
-    ranked: list[Candidate] = []
+    best_first: list[Candidate] = []
     for number, effort in enumerate(EFFORTS):
         searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
         found = find_hypotheses(*spectra, effort, progress=searching)
         judged = judge.judge(found.best(effort.n_refined), progress=refining)
-        ranked = sorted(ranked + judged, key=lambda candidate: candidate.rank)
-        if confidence_of(ranked[0], ranked) >= SURE:
+        best_first = ranked(best_first + judged)
+        if confidence_of(best_first[0], best_first) >= SURE:
             break
-    return ranked
+    return best_first
 
 
 def _candidates_with_signs(
@@ -188,7 +188,7 @@ def _candidates_with_signs(
     judged = []
     for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
         found = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
-        judged.append(sorted(judge.judge(found, given, refining), key=lambda candidate: candidate.rank))
+        judged.append(ranked(judge.judge(found, given, refining)))
     return judged[0], judged[0] + judged[1]
 
 

@@ -13,6 +13,7 @@ from ...fields.scalar_field import refined_net
 from ...progress import Progress
 from ...surface.mesh import Floats, Ints, TriangleMesh
 from ...surface.orientation import reversed_where, wrongly_wound
+from ...surface.ties import CHOICE
 from .moments import Moments, moments_of, point_areas
 
 # Points at which functions of two shapes are compared.
@@ -151,12 +152,17 @@ def farthest_points(positions: Floats, n_points: int) -> Ints:
     columns = np.ascontiguousarray(positions.T)
     chosen = np.empty(n_points, dtype=np.int64)
     distance = np.full(len(positions), np.inf)
-    chosen[0] = ((positions - positions.mean(axis=0)) ** 2).sum(axis=1).argmax()
+    chosen[0] = _first_farthest(((positions - positions.mean(axis=0)) ** 2).sum(axis=1))
     for place in range(1, n_points):
         x, y, z = columns - positions[chosen[place - 1]][:, None]
         np.minimum(distance, x * x + y * y + z * z, out=distance)
-        chosen[place] = distance.argmax()
+        chosen[place] = _first_farthest(distance)
     return chosen
+
+
+def _first_farthest(distance: Floats) -> int:
+    """Return the place of the largest of positive numbers, the first of those that tie; faster than `first_largest`."""
+    return int((distance >= (1 - CHOICE) * distance.max()).argmax())
 
 
 def _unit_positions(positions: Floats, triangles: Ints, area: float) -> Floats:

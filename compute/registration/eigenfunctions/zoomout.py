@@ -8,6 +8,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints
+from ...surface.ties import CHOICE
 
 # Sizes of the functional map, the constant included, from hypotheses to a map that can be judged.
 MATCHING_SIZES = (17, 17, 20, 24, 29, 35, 42, 50)
@@ -104,9 +105,20 @@ def nearest_rows(queries: Floats, rows: Floats, progress: Progress = silent) -> 
 
 def rounded(functional_map: Floats) -> tuple[Ints, Ints]:
     """Return (ks,) the target's function that each of the source's mostly is, and +1 or -1: a map as order and sign."""
-    order = linear_sum_assignment(-np.abs(functional_map.T))[1]
+    order = assigned(-np.abs(functional_map.T))
     entries = functional_map[order, np.arange(len(order))]
     return order, np.where(entries < 0, -1, 1)
+
+
+def assigned(costs: Floats) -> Ints:
+    """Return (k,) the column of each row in the cheapest assignment, of equally cheap ones the nearest to the diagonal.
+
+    Parameters
+    ----------
+    costs : (k, at least k) float64
+    """
+    row, column = np.indices(costs.shape)
+    return linear_sum_assignment(costs + CHOICE * np.abs(row - column) / costs.shape[1])[1]
 
 
 def with_signs(functional_map: Floats, signs: Mapping[int, int]) -> Floats:

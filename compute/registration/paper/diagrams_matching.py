@@ -20,7 +20,9 @@ from ...msc.links import links_of
 from ...msc.merge_tree import merge_tree
 from ...segmentation.parts.part_labels import BODY, Segmentation
 from ...surface.mesh import Bools, Floats, Ints
+from ...surface.ties import ROUNDING, evened
 from ..eigenfunctions.spectral_shape import SpectralShape
+from ..eigenfunctions.zoomout import assigned
 
 # How many functions are compared, and how far a function may move (Reuter 2009, sections 4.6 and 4.7).
 DIAGRAM_FUNCTIONS = 6
@@ -52,7 +54,7 @@ class DiagramMatching:
     def order(self) -> Ints:
         """(k,) the target's function (from 0) that each of the source's is."""
         best = np.where(np.isfinite(self.distances), self.distances, 1e9).min(axis=2)
-        return linear_sum_assignment(best)[1]
+        return assigned(best)
 
     @property
     def _chosen(self) -> Floats:
@@ -61,7 +63,7 @@ class DiagramMatching:
     @property
     def signs(self) -> Ints:
         """(k,) +1, or -1 where the negated diagram is nearer."""
-        return np.where(self._chosen[:, 1] < self._chosen[:, 0], -1, 1)
+        return np.where(self._chosen[:, 1] < self._chosen[:, 0] - ROUNDING * self.ranges, -1, 1)
 
     @property
     def is_open(self) -> Bools:
@@ -128,7 +130,8 @@ def diagram_points(triangles: Ints, functions: Floats) -> list[Floats]:
     """
     links = links_of(triangles, len(functions))
     found = []
-    for values in functions.T:
+    for function in functions.T:
+        values = evened(function, float(np.ptp(function)))
         rank = rank_vertices(values)
         trees = merge_tree(rank, links), merge_tree(len(values) - 1 - rank, links)
         points = values[np.concatenate([np.stack([tree.extremum, tree.saddle], axis=1) for tree in trees])]

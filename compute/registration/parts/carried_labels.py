@@ -14,6 +14,7 @@ from ...segmentation.parts.part_labels import BODY, BranchLabels, Parts, label_b
 from ...surface.cleaning import Surface
 from ...surface.heat_smoothing import smoothed
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, sum_by
+from ...surface.ties import first_largest
 from ..eigenfunctions.spectral_shape import SpectralShape
 
 # Borders are smoothed over this distance, in units of the root of the area: the points that a map lands on lie so far
@@ -163,7 +164,7 @@ def _carried(given: GivenParts, target: Divisible, landing: Ints, present: Ints)
     rows = np.repeat(target.face, 3)
     n_faces = len(target.graph.area)
     corners = coo_array((np.repeat(shape.areas, 3), (rows, shape.triangles.ravel())), shape=(n_faces, len(soft)))
-    return np.append(BODY, given.id)[np.argmax(corners.tocsr() @ soft, axis=1)]
+    return np.append(BODY, given.id)[first_largest(corners.tocsr() @ soft)]
 
 
 def _heirs(given: GivenParts, present: Ints) -> Floats:

@@ -10,6 +10,7 @@ from ...segmentation.hierarchy.arc_tree import ArcTree
 from ...segmentation.hierarchy.levels import Hierarchy
 from ...segmentation.parts.part_labels import BODY, Parts
 from ...surface.mesh import Bools, Floats, Ints
+from ...surface.ties import evened
 from .carried_labels import Divisible, GivenParts, given_parts
 
 # A part and its partner share at least this much of what they cover together.
@@ -151,11 +152,13 @@ def _partners(reference: ReferenceParts, covers: list[_Cover]) -> list[tuple[int
 
 
 def _by_overlap(covers: list[_Cover]) -> list[tuple[int, int, int]]:
-    rows = []
+    rows, overlaps = [], []
     for tree, cover in enumerate(covers):
         arcs, parts = np.nonzero(cover.overlap >= LEAST_OVERLAP)
-        rows += [(-cover.overlap[arc, part], int(part), tree, int(arc)) for arc, part in zip(arcs, parts, strict=True)]
-    return [(part, tree, arc) for _, part, tree, arc in sorted(rows)]
+        rows += [(part, tree, arc) for arc, part in zip(arcs.tolist(), parts.tolist(), strict=True)]
+        overlaps += cover.overlap[arcs, parts].tolist()
+    even = evened(np.array(overlaps)).tolist()
+    return [row for _, row in sorted(zip((-overlap for overlap in even), rows, strict=True))]
 
 
 def _fits(one: tuple[int, int, int], other: tuple[int, int, int], nesting: Bools, covers: list[_Cover]) -> bool:

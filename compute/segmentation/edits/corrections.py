@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...surface.mesh import Floats, Ints
+from ...surface.ties import first_largest
 from ..faces.branches import Branches, repaired_labels
 
 # A level of its own for what lies inside a part; its border stays.
@@ -188,4 +189,4 @@ def _painted(labelling: Labelling, branches: Branches, corrections: Corrections,
 
 
 def _most_common(labels: Ints, area: Floats) -> int:
-    return int(np.bincount(labels, area).argmax())
+    return int(first_largest(np.bincount(labels, area)))

@@ -8,6 +8,10 @@ from ...fields.scalar_field import Net, share_below
 from ...surface.mesh import Floats, Ints
 from ..hierarchy.arc_tree import ArcTree
 
+# A face is halved if its shares differ from one half by less: where the field hardly rises within a face, shares are
+# rounded this much.
+HALVED = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class ArcAreas:

@@ -8,7 +8,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...surface.mesh import Bools, Floats, Ints, sum_by
-from .arc_areas import ArcAreas
+from ...surface.ties import evened
+from .arc_areas import HALVED, ArcAreas
 from .face_graph import FaceGraph
 
 
@@ -138,7 +139,8 @@ def repaired_labels(labels: Ints, branches: Branches, bodies: tuple[int, ...] = 
 def _majority_arc(parent: Ints, shares: ArcAreas, n_faces: int) -> Ints:
     """Return for each face the innermost arc whose subtree holds more than half of it; -1 for faces without shares."""
     arc_of_face = np.full(n_faces, -1)
-    half = sum_by(shares.face, shares.area, n_faces) / 2
+    # A face that symmetry halves is on neither side.
+    half = sum_by(shares.face, shares.area, n_faces) * (0.5 + HALVED)
     face, arc, area = shares.face, shares.arc, shares.area
     while len(face):
         (face, arc), area = _sum_rows(face, arc, area, len(parent))
@@ -178,7 +180,7 @@ def _stray_pieces(labels: Ints, branches: Branches, bodies: tuple[int, ...]) -> 
     area = sum_by(piece, branches.area, n_pieces)
     label = np.zeros(n_pieces, dtype=np.int64)
     label[piece] = labels
-    order = np.lexsort((area, label))
+    order = np.lexsort((evened(area), label))
     is_largest = np.append(label[order][1:] != label[order][:-1], True)
     is_stray = np.zeros(n_pieces, dtype=bool)
     is_stray[order[~is_largest]] = True
@@ -193,7 +195,7 @@ def _best_neighbour(labels: Ints, piece: Ints, is_stray: Bools, branches: Branch
     n_labels = int(labels.max(initial=0)) + 1
     (stray, label), total = _sum_rows(piece[sides[outward, 0]], labels[sides[outward, 1]], length[outward], n_labels)
     # For each piece the row with the longest border; the smaller label among equals.
-    order = np.lexsort((-label, total, stray))
+    order = np.lexsort((-label, evened(total), stray))
     best = order[np.append(stray[order][1:] != stray[order][:-1], True)] if len(order) else order
     label_of_piece = np.full(len(is_stray), -1)
     label_of_piece[stray[best]] = label[best]

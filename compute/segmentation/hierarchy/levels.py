@@ -8,6 +8,7 @@ from ...errors import LevelError
 from ...msc.merge_tree import MergeTree
 from ...msc.morse_smale import FieldTopology
 from ...surface.mesh import Bools, Floats, Ints
+from ...surface.ties import ROUNDING, evened
 from .arc_tree import NEVER, ArcTree, Features, arc_of_vertex, build_arc_tree
 
 # Pairs below this fraction of the field's range are noise of the triangulation (Reuter 2009, section 4.3).
@@ -56,7 +57,7 @@ class Hierarchy:
         """Return the level that keeps the pairs of at least this fraction of the range."""
         if not threshold >= 0:
             raise LevelError(f"The threshold is a fraction of the field's range, from 0 to 1, not {threshold}.")
-        n_above = int((self.persistence >= threshold * self.value_range).sum())
+        n_above = int((self.persistence >= (threshold - ROUNDING) * self.value_range).sum())
         return min(n_above, self.n_levels - 1)
 
     def checked_level(self, level: int) -> int:
@@ -109,7 +110,7 @@ def build_hierarchy(
 def _pairs_by_persistence(values: Floats, sweeps: list[_Sweep]) -> tuple[Ints, Floats, Bools]:
     pairs = np.concatenate([np.stack([sweep.tree.extremum, sweep.tree.saddle], axis=1) for sweep in sweeps])
     is_maximum = np.concatenate([np.full(len(sweep.tree.saddle), sweep.is_of_maxima) for sweep in sweeps])
-    persistence = np.abs(values[pairs[:, 0]] - values[pairs[:, 1]])
+    persistence = evened(np.abs(values[pairs[:, 0]] - values[pairs[:, 1]]))
     order = np.lexsort((-pairs[:, 0], persistence))
     return pairs[order], persistence[order], is_maximum[order]
 

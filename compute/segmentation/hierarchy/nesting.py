@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...surface.mesh import Bools, Floats, Ints, sum_by
+from ...surface.ties import first_largest
 from .arc_tree import ArcTree
 from .necks import LEAST_HEIGHT
 
@@ -121,5 +122,5 @@ def _with_a_body(tree: ArcTree, is_cut: Bools, is_inner: Bools, area: Floats) ->
     for body in (0, *(1 + np.flatnonzero(tree.is_shell))):
         next_to_body = np.flatnonzero(is_inner & (region[tree.parent] == body))
         if size[body] < LEAST_AREA and len(next_to_body):
-            kept[next_to_body[size[1 + next_to_body].argmax()]] = False
+            kept[next_to_body[first_largest(size[1 + next_to_body])]] = False
     return kept

@@ -9,6 +9,7 @@ from ...fields.scalar_field import diffusion_field
 from ...msc.links import Links, links_of
 from ...msc.morse_smale import FieldTopology
 from ...surface.mesh import Floats, Ints
+from ...surface.ties import evened
 from ..hierarchy.levels import build_hierarchy
 
 # Functions that are judged; the higher ones oscillate on the protrusions themselves.
@@ -73,7 +74,8 @@ def _tips(links: Links, vertices: Floats, heat: Floats) -> Ints:
 
 
 def _hint(links: Links, vertices: Floats, values: Floats, tips: Ints, number: int) -> FunctionHint:
-    hierarchy, arcs = build_hierarchy(FieldTopology(links, vertices, values), minima_are_features=True)
+    even = evened(values, float(np.ptp(values)))
+    hierarchy, arcs = build_hierarchy(FieldTopology(links, vertices, even), minima_are_features=True)
     level = hierarchy.default_level
     held: set[int] = set()
     n_parts = 0

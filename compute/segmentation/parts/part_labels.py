@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
+from ...surface.ties import ROUNDING
 from ..borders.level_set_borders import Polyline
 from ..edits.corrections import LEVEL, Corrections, Labelling, corrected
 from ..faces.branches import Branches, repaired_labels
@@ -197,7 +198,7 @@ def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, 
     for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True):
         label = tree.spread(cut)[pieces.arc]
         area = sum_by(label, pieces.area)[label]
-        is_on_top = (label > BODY) & (label != body) & (area < size)
+        is_on_top = (label > BODY) & (label != body) & (area < (1 - ROUNDING) * size)
         overlaid, size = np.where(is_on_top, label, overlaid), np.where(is_on_top, area, size)
     return overlaid
 

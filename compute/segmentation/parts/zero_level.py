@@ -9,8 +9,10 @@ from scipy.sparse.csgraph import connected_components
 from ...fields.scalar_field import ScalarField, share_below
 from ...surface.cleaning import Surface
 from ...surface.mesh import Bools, Ints, TriangleMesh, sum_by
+from ...surface.ties import ROUNDING, evened, first_largest
 from ..borders.edge_profile import edge_profile
 from ..borders.level_set_borders import Polyline, cross_edges, part_of_border, trace_borders
+from ..faces.arc_areas import HALVED
 from ..faces.face_graph import FaceGraph, face_graph
 from ..hierarchy.arc_tree import flat_tree
 from .part_labels import Parts, Segmentation
@@ -49,7 +51,7 @@ def _hills(field: ScalarField, label_of_surface: Ints) -> tuple[Ints, Ints]:
 
     Vertices below zero get the number behind the last piece; pieces too small for a face have no part.
     """
-    is_above = field.values > 0
+    is_above = field.values > ROUNDING * field.value_range
     corners = field.net.triangles
     left, right = np.concatenate([corners[:, :2], corners[:, 1:]]).T
     both = is_above[left] & is_above[right]
@@ -67,14 +69,16 @@ def _hills(field: ScalarField, label_of_surface: Ints) -> tuple[Ints, Ints]:
         (of_vertex[corners[inside, 0]], label_of_surface[field.net.triangle_of_surface[inside]]),
         field.net.areas[inside],
     )
-    return of_vertex, votes.argmax(axis=1)
+    return of_vertex, first_largest(votes)
 
 
 def _is_negative(field: ScalarField, surface: Surface, n_triangles: int) -> Bools:
     """Tell (T,) whether the greater half of each triangle of the input is below zero."""
     heights = np.sort(field.values[field.net.triangles], axis=1)
     signed = field.net.areas * (2 * share_below(heights, np.zeros(len(heights))) - 1)
-    return sum_by(surface.input_triangle[field.net.triangle_of_surface], signed, n_triangles) > 0
+    triangle = surface.input_triangle[field.net.triangle_of_surface]
+    # What symmetry halves is above.
+    return sum_by(triangle, signed, n_triangles) > 2 * HALVED * sum_by(triangle, field.net.areas, n_triangles)
 
 
 def _numbered_pieces(graph: FaceGraph, is_negative: Bools) -> Ints:
@@ -83,7 +87,7 @@ def _numbered_pieces(graph: FaceGraph, is_negative: Bools) -> Ints:
     joined = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n_faces, n_faces))
     piece = connected_components(joined, directed=False)[1][graph.stands_for]
     _, piece = np.unique(piece, return_inverse=True)
-    by_area = np.argsort(-sum_by(piece, graph.area), kind="stable")
+    by_area = np.argsort(-evened(sum_by(piece, graph.area)), kind="stable")
     return 1 + np.argsort(by_area, kind="stable")[piece]
 
 
@@ -91,5 +95,5 @@ def _extrema(field: ScalarField, label_of_surface: Ints, ids: Ints) -> Ints:
     """Return the net vertex of each piece at which the field is furthest from zero."""
     corners = field.net.triangles.ravel()
     label = np.repeat(label_of_surface[field.net.triangle_of_surface], 3)
-    order = np.lexsort((-np.abs(field.values[corners]), label))
+    order = np.lexsort((-evened(np.abs(field.values[corners])), label))
     return corners[order[np.searchsorted(label[order], ids)]]
