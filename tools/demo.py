@@ -21,7 +21,7 @@ from tools.extension import load_extension
 load_extension()
 from eigenparts.cli import formats
 from eigenparts.cli.suppress_output import blender_is_quiet as quiet
-from eigenparts.operators.mesh_state import state
+from eigenparts.operators.mesh_state.state import read
 from eigenparts.operators.messages.user_errors import Refusal
 from tools.render import render, side_by_side
 
@@ -87,7 +87,7 @@ def _divide(obj: bpy.types.Object, folder: Path) -> dict[str, Any]:
 def _picture(obj: bpy.types.Object, folder: Path, name: str, levels: dict[str, Any]) -> str:
     with quiet():
         bpy.ops.eigenparts.segment(**LEVELS[name])
-    summary = state.summarize(obj.data)
+    summary = read(obj.data).summary
     parts = [{"id": part, "share_of_area": round(share, 4), "faces": n_faces} for part, share, n_faces in summary.parts]
     levels[name] = {"level": summary.level, "n_levels": summary.n_levels, "parts": parts}
     with quiet():

@@ -3,7 +3,8 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
-from ..operators.mesh_state import function_hints
+from ..operators.mesh_state.function_hints import MOST_SHOWN
+from ..operators.mesh_state.state import read
 from .tab import EigenpartsPanel
 
 
@@ -15,11 +16,11 @@ class EIGENPARTS_PT_function_hints(EigenpartsPanel, bpy.types.Panel):
     def poll(cls, context: bpy.types.Context) -> bool:
         is_asked = context.scene.eigenparts.field == "EIGENFUNCTION"
         obj = context.object
-        return is_asked and obj is not None and obj.type == "MESH" and bool(function_hints.read(obj.data))
+        return is_asked and obj is not None and obj.type == "MESH" and bool(read(obj.data).function_hints)
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
-        for number, n_held, n_protrusions in function_hints.read(context.object.data)[: function_hints.MOST_SHOWN]:
+        for number, n_held, n_protrusions in read(context.object.data).function_hints[:MOST_SHOWN]:
             text = translated("{number}: {held} of {all} protrusions").format(
                 number=number, held=n_held, all=n_protrusions
             )

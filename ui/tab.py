@@ -4,7 +4,8 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ..operators.mesh_data.selected_meshes import other_meshes
-from ..operators.mesh_state import state
+from ..operators.mesh_state.schema import ABSENT
+from ..operators.mesh_state.state import is_analyzed
 from ..operators.messages.sentences import in_language
 
 # What is said where there is nothing to show yet.
@@ -39,12 +40,12 @@ def active_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
 def analyzed_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
     """Return the active mesh if it is analyzed."""
     mesh = active_mesh(context)
-    return mesh if mesh is not None and state.is_analyzed(mesh) else None
+    return mesh if mesh is not None and is_analyzed(mesh) else None
 
 
 def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Say why the panel is empty."""
-    layout.label(text=NO_MESH if active_mesh(context) is None else state.ABSENT)
+    layout.label(text=NO_MESH if active_mesh(context) is None else ABSENT)
 
 
 def main_row(panel: bpy.types.Panel, context: bpy.types.Context) -> bpy.types.UILayout | None:

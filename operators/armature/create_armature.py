@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..jobs.mesh_handle import MeshHandle
-from ..mesh_state import part_table
+from ..mesh_state.state import read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal
 from .bone_names import name_bones
@@ -127,7 +127,7 @@ def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: NamedSkeleton, nam
 
 def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: NamedSkeleton, names: list[str]) -> None:
     """Give bones the colours of their parts."""
-    linear = part_table.colours(mesh, int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
+    linear = read(mesh).parts.colours_of(int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     for name, colour in zip(names, srgb.tolist(), strict=True):
         bone = armature.bones[name]

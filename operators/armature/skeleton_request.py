@@ -14,7 +14,9 @@ from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data import mesh_arrays
-from ..mesh_state import bone_layout, part_sides, part_table, state
+from ..mesh_state import bone_layout, part_sides
+from ..mesh_state.references import reference_of, state_of_reference
+from ..mesh_state.state import is_analyzed_for, read, remember
 from ..messages.sentences import Messages
 from ..outputs.part_writer import read_labels
 from ..outputs.rollback import all_or_nothing, bound_or_not, nothing_left_behind
@@ -83,7 +85,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and state.is_analyzed_for(cls, context)
+        return super().poll(context) and is_analyzed_for(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """From the window: what the call leaves open is taken from the panel."""
@@ -104,14 +106,16 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., NamedSkeleton], MeshHandle]:
         obj = context.object
+        state = read(obj.data)
+        reference = state_of_reference(state)
         wanted = SkeletonInput(
             labels=read_labels(obj.data),
-            level=state.summarize(obj.data).level,
+            level=state.level,
             n_pieces=self.bones_in_limbs,
             poses=_other_poses(context),
-            pairing=part_sides.of_reference(obj.data),
+            pairing={} if reference is None else reference.part_sides,
             needs_weights=self.needs_weights(),
-            layout=bone_layout.of_reference(obj.data),
+            layout=None if reference is None else reference.bone_layout,
         )
         return partial(lay_bones, read_input(context, obj, self.analysis_settings()), wanted), MeshHandle.of(obj)
 
@@ -123,8 +127,8 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
         obj = handle.find_object_in_view(context)
         mesh = obj.data
         with all_or_nothing(mesh), nothing_left_behind(context), bound_or_not(obj):
-            part_sides.remember(mesh, laid.pairing)
-            bone_layout.remember(mesh, laid.skeleton.layout)
+            sides, layout = part_sides.packed_sides(laid.pairing), bone_layout.packed_layout(laid.skeleton.layout)
+            remember(mesh, {**sides, **layout})
             built = self.build(context, obj, laid)
         warnings = (*built.warnings, *laid.warnings, *_warnings_of_reference(mesh))
         Messages(built.infos, warnings).report(self)
@@ -137,9 +141,9 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
 def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
     """Return the warning about a registered mesh whose reference has no bones that it could be given."""
-    reference = bone_layout.reference_of(mesh)
+    reference = reference_of(read(mesh))
     # An object that was deleted lives on where others refer to it, but nothing can be created for it.
-    if reference is None or not reference.users_scene or bone_layout.read(reference.data) is not None:
+    if reference is None or not reference.users_scene or read(reference.data).bone_layout is not None:
         return []
     return [bone_layout.NO_BONES.format(reference.name)]
 
@@ -189,7 +193,8 @@ def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarr
 
 def part_names(mesh: bpy.types.Mesh, skeleton: compute.Skeleton) -> dict[int, str]:
     """Return the names of the parts that bones lie in."""
-    return {part: part_table.name_of(mesh, part) for part in np.unique(skeleton.part).tolist()}
+    parts = read(mesh).parts
+    return {part: parts.name_of(part) for part in np.unique(skeleton.part).tolist()}
 
 
 def _pairing(skeleton: compute.Skeleton, partner: np.ndarray | None) -> dict[int, tuple[int, int]]:

@@ -7,7 +7,9 @@ from typing import Any
 
 import bpy
 
+from ... import compute
 from ..mesh_data import mesh_arrays
+from .choice_items import ATTRIBUTE, EIGENFUNCTION, word
 
 
 @dataclass(frozen=True)
@@ -66,11 +68,17 @@ def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: Anal
 
 def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> dict[str, Any]:
     """Return the keyword arguments of the engine for the settings of the user."""
-    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": settings.eigenfunction}
-    is_own = settings.field == "ATTRIBUTE"
     return {
-        "field": mesh_arrays.read_vertex_floats(mesh, settings.attribute) if is_own else choice[settings.field],
-        "order": "auto" if settings.order == "AUTO" else int(settings.order),
-        "boundary": settings.boundary.lower(),
-        "shells": settings.shells.lower(),
+        "field": _field(mesh, settings),
+        "order": word(compute.ORDERS, settings.order),
+        "boundary": word(compute.BOUNDARIES, settings.boundary),
+        "shells": word(compute.SHELLS, settings.shells),
     }
+
+
+def _field(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> Any:
+    if settings.field == EIGENFUNCTION:
+        return settings.eigenfunction
+    if settings.field == ATTRIBUTE:
+        return mesh_arrays.read_vertex_floats(mesh, settings.attribute)
+    return word(compute.FIELDS, settings.field)

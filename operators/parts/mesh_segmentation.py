@@ -16,7 +16,9 @@ import numpy as np
 
 from ... import compute
 from ..jobs import recent_analyses
-from ..mesh_state import function_hints, state
+from ..mesh_state import analysis_writer, function_hints
+from ..mesh_state.state import read as read_state
+from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import Messages
 from ..outputs import part_writer
 from ..outputs.rollback import all_or_nothing
@@ -42,8 +44,8 @@ class AnalysisResult:
     hints : tuple of FunctionHint
     """
 
-    stored: state.StoredAnalysis
-    source: state.BorderSource
+    stored: StoredAnalysis
+    source: BorderSource
     description: str
     warnings: tuple[str, ...]
     seconds: float
@@ -67,7 +69,7 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
     Refusal
         If something of the user's stands where results belong, or the settings do not fit the mesh.
     """
-    part_writer.refuse_foreign_results(obj.data)
+    part_writer.refuse_foreign_results(read_state(obj.data))
     return read_input(context, obj, settings)
 
 
@@ -101,15 +103,13 @@ def write(
     with all_or_nothing(mesh):
         warnings = store(mesh, result)
         labels = part_writer.segment_mesh(mesh, mode=mode, **(choice or {}))
-    infos = (_summary(len(labels.parts), result.seconds), function_hints.sentence(mesh))
+    infos = (_summary(len(labels.parts), result.seconds), function_hints.sentence(read_state(mesh).function_hints))
     return Segmented(labels, Messages(infos, (*result.warnings, *warnings, *labels.warnings)))
 
 
 def store(mesh: bpy.types.Mesh, result: AnalysisResult) -> tuple[str, ...]:
     """Put an analysis on its mesh, not its parts, and return warnings."""
-    warnings = state.store(mesh, result.stored, result.source, result.description)
-    function_hints.store(mesh, result.hints)
-    return warnings
+    return analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
 
 
 def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) -> AnalysisResult:
@@ -118,8 +118,8 @@ def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) 
     heights = compute.vertex_heights(analysis.surface, analysis.field)
     is_function = isinstance(given.options["field"], int)
     return AnalysisResult(
-        stored=state.StoredAnalysis(analysis.hierarchy, branches, given.options["shells"]),
-        source=state.BorderSource(analysis.profile(given.arrays.edges), heights, analysis.closing_heights),
+        stored=StoredAnalysis(analysis.hierarchy, branches, given.options["shells"]),
+        source=BorderSource(analysis.profile(given.arrays.edges), heights, analysis.closing_heights),
         description=_description(given.options["field"]),
         warnings=analysis.warnings,
         seconds=seconds,

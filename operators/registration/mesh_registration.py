@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import bpy
 
-from ..mesh_state import corrected_analysis, registration_record, state
+from ..mesh_state import registration_record
+from ..mesh_state.corrected_analysis import corrected
+from ..mesh_state.part_table import PartTable
+from ..mesh_state.references import registered_objects
+from ..mesh_state.state import MeshState, read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
 from ..outputs import part_writer
@@ -37,7 +40,7 @@ class SharedParts:
     reference : str
         Name of the object.
     mode : str
-    tables : dict
+    parts : PartTable
         Names and colours.
     warnings : tuple of str
         To be told of the reference, beginning with its name.
@@ -47,7 +50,7 @@ class SharedParts:
 
     reference: str
     mode: str
-    tables: dict[str, Any]
+    parts: PartTable
     warnings: tuple[str, ...]
     options: MatchOptions
     settings: AnalysisSettings
@@ -70,13 +73,13 @@ def read_reference(
     choice : mapping, optional
         One of ``level``, ``threshold`` and ``n_parts``; the level that the mesh shows if there is none.
     """
-    _refuse_registered(obj)
-    mesh = obj.data
-    mode, choice = mode or state.mode_of(mesh), choice or {}
+    state = read(obj.data)
+    _refuse_registered(obj, state)
+    mode, choice = mode or state.mode, choice or {}
     try:
-        shown = ShownParts(mode, choice, state.summarize(mesh).level, corrected_analysis.load(mesh))
+        shown = ShownParts(mode, choice, state.level, corrected(state))
     except Refusal:
-        if corrected_analysis.items_of(mesh):
+        if state.corrections:
             raise Refusal(CORRECTED_BEFORE.format(obj.name)) from None
         shown = ShownParts(mode, choice)
     return read_target(context, obj, settings), shown
@@ -93,9 +96,9 @@ def first_free_label(context: bpy.types.Context, reference: bpy.types.Object, ta
     """Return a label above all that others have which are registered to the same reference."""
     labels = [
         label
-        for obj, _ in registration_record.registered_objects(context)
-        if registration_record.reference_object(obj.data) == reference and obj not in targets
-        for label, _, _ in state.summarize(obj.data).parts
+        for obj, state in registered_objects(context)
+        if state.registration.reference == reference and obj not in targets
+        for label in state.summary.shares
     ]
     return 1 + max(labels, default=0)
 
@@ -120,7 +123,7 @@ def write_all(
 
 def write_reference(obj: bpy.types.Object, reference: PreparedReference) -> Segmented:
     """Let a reference show its parts; all of them are written or nothing."""
-    part_writer.refuse_foreign_results(obj.data)
+    part_writer.refuse_foreign_results(read(obj.data))
     shown = mesh_segmentation.write(obj.data, reference.result, mode=reference.mode, choice={"level": reference.level})
     warnings = _in_name_of(obj.name, shown.messages.warnings)
     return Segmented(shown.labels, Messages(shown.messages.infos, warnings))
@@ -137,7 +140,7 @@ def shared_parts(
     return SharedParts(
         reference=obj.name,
         mode=reference.mode,
-        tables=registration_record.tables_of(obj.data),
+        parts=read(obj.data).parts,
         warnings=shown.messages.warnings,
         options=options,
         settings=settings,
@@ -154,11 +157,18 @@ def write_target(
     reference : Object or None
         The object that is the reference, None if it is in another file.
     """
-    part_writer.refuse_foreign_results(mesh)
+    part_writer.refuse_foreign_results(read(mesh))
     with all_or_nothing(mesh):
         lost = mesh_segmentation.store(mesh, shape.result)
-        registration_record.remember(mesh, shared.tables, match_of(shape, shared), reference)
-        part_writer.show_labels(mesh, shape.labels, shape.result.stored.branches, shared.mode)
+        part_writer.show_registered(
+            mesh,
+            shape.labels,
+            shape.result.stored.branches,
+            shared.parts,
+            match_of(shape, shared),
+            reference,
+            mode=shared.mode,
+        )
     warnings = _in_name_of(shape.name, (*shape.result.warnings, *lost, *shape.labels.warnings))
     return Messages(warnings=(*shared.warnings, *warnings, *_doubts(shape)))
 
@@ -181,8 +191,8 @@ def match_of(shape: RegisteredShape, shared: SharedParts) -> registration_record
     )
 
 
-def _refuse_registered(reference: bpy.types.Object) -> None:
-    match = registration_record.read(reference.data)
+def _refuse_registered(reference: bpy.types.Object, state: MeshState) -> None:
+    match = state.match
     if match is not None:
         raise Refusal(
             f"{reference.name} shows the parts of {match.reference}; make that one the active object, or move the level"

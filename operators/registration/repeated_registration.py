@@ -12,6 +12,7 @@ from bpy.props import StringProperty
 
 from ..jobs import background
 from ..mesh_state import registration_record
+from ..mesh_state.state import read
 from ..messages.user_errors import Refusal, can_use_active_mesh
 from ..parts.analysis_settings import SETTINGS, AnalysisSettings
 from .match_options import MatchOptions
@@ -32,10 +33,11 @@ class RepeatedRegistration(RegistrationOperator):
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], RegistrationHandles]:
         obj = context.object if not self.object_name else _mesh_object(context, self.object_name)
-        match = registration_record.read(obj.data)
+        registration = read(obj.data).registration
+        match = None if registration is None else registration.match
         if match is None:
             raise Refusal(registration_record.NOT_REGISTERED)
-        reference = registration_record.reference_object(obj.data) or _mesh_object(context, match.reference)
+        reference = registration.reference or _mesh_object(context, match.reference)
         if reference.name not in context.view_layer.objects:
             raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
         if not _are_settings(match.settings, context.scene.eigenparts.bl_rna.properties):

@@ -11,7 +11,7 @@ import numpy as np
 from ... import compute
 from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
-from ..mesh_state.state import StoredAnalysis
+from ..mesh_state.stored_analysis import StoredAnalysis
 from ..messages.user_errors import Refusal, in_name_of
 from ..parts.analysis_settings import AnalysisInput
 from ..parts.mesh_segmentation import AnalysisResult, result_of

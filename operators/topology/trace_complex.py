@@ -7,9 +7,9 @@ import numpy as np
 from bpy.props import FloatProperty, IntProperty
 
 from ... import compute
-from ..mesh_state import state
 from ..mesh_state.palette import COMPLEX_COLOURS
 from ..mesh_state.palette import COMPLEX_ROLE as ROLE
+from ..mesh_state.state import is_analyzed, read
 from ..outputs.rollback import nothing_left_behind
 from ..parts.fresh_analysis import FreshAnalysis
 
@@ -67,7 +67,7 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
 
 def shown_level(mesh: bpy.types.Mesh, analysis: "compute.Analysis") -> int | None:
     """Return the level that a mesh shows, as far as the analysis has so many; None if it shows none."""
-    return min(state.summarize(mesh).level, analysis.hierarchy.n_levels - 1) if state.is_analyzed(mesh) else None
+    return min(read(mesh).level, analysis.hierarchy.n_levels - 1) if is_analyzed(mesh) else None
 
 
 def traced_complex(analysis: "compute.Analysis", level: int | None) -> TracedComplex:

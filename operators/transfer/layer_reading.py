@@ -8,7 +8,7 @@ import numpy as np
 
 from ..mesh_data import mesh_arrays
 from ..mesh_data.attribute_values import STORAGES, read_attribute
-from ..mesh_state import state
+from ..mesh_state.schema import ATTRIBUTES
 from ..messages.user_errors import Refusal
 from ..outputs import material_slots
 from ..outputs.part_writer import PART, read_labels
@@ -142,7 +142,7 @@ def _materials(obj: bpy.types.Object) -> Iterator[Layer]:
 
 def _attributes(mesh: bpy.types.Mesh) -> Iterator[tuple[str, Layer]]:
     """Yield the attributes that are not ours, each with the kind of layer that it belongs to."""
-    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in state.ATTRIBUTES)}
+    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in ATTRIBUTES)}
     for attribute in mesh.attributes:
         kind = _kind_of(attribute)
         is_blenders = attribute.name.startswith(".") and attribute.name not in MADE_BY_HAND

@@ -14,8 +14,8 @@ import bpy
 import numpy as np
 
 from ..mesh_data import mesh_arrays
-from ..mesh_state import part_table, registration_record
-from ..mesh_state.state import is_analyzed
+from ..mesh_state.registration_record import SURE
+from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
 from ..registration.match_options import MatchOptions, remembered_options
@@ -82,14 +82,14 @@ def read_source(context: bpy.types.Context, obj: bpy.types.Object, settings: Tra
         raise Refusal("Choose at least one layer to transfer.")
     layers = read_layers(obj, settings.choice)
     highest = max((int(layer.values.max(initial=0)) for layer in layers if layer.kind == PARTS), default=0)
-    return TransferSource(shape, layers, part_table.colours(obj.data, highest + 1))
+    return TransferSource(shape, layers, read(obj.data).parts.colours_of(highest + 1))
 
 
 def read_target(
     context: bpy.types.Context, obj: bpy.types.Object, source: TransferSource, settings: TransferSettings
 ) -> TransferShape:
     """Return the shape of an object that the layers of a source can be written to, or say why they cannot."""
-    match = registration_record.read(obj.data)
+    match = read(obj.data).match
     # What the user chose of the matchings with this source holds for the transfer as well.
     known = remembered_options(match) if match is not None and match.reference == source.name else MatchOptions()
     shape = _read_shape(context, obj, replace(known, mirrored=settings.choice.swaps_sides), settings)
@@ -149,7 +149,7 @@ def _doubts(obj: bpy.types.Object, source: str, mapped: MappedLayers) -> list[st
     doubts = [
         f'{obj.name}: the seams of "{name}" could not be kept, there are too many pieces.' for name in mapped.torn_seams
     ]
-    if mapped.confidence <= registration_record.SURE:
+    if mapped.confidence <= SURE:
         doubts.insert(0, f"{obj.name} is matched with a confidence of {mapped.confidence:.0%} only.")
     if is_analyzed(obj.data) and any(layer.kind == PARTS for layer in mapped.layers):
         doubts.append(HAS_PARTS.format(obj.name, source))

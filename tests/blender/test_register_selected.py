@@ -82,9 +82,9 @@ def agreement(reference, target):
 
 
 def registration_of(obj):
-    from eigenparts.operators.mesh_state import registration_record
+    from eigenparts.operators.mesh_state.state import read
 
-    return registration_record.read(obj.data)
+    return read(obj.data).match
 
 
 def test_every_part_has_the_number_of_the_reference(registered):

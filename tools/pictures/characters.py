@@ -9,7 +9,8 @@ from scipy.spatial import cKDTree
 
 from compute import TriangleMesh
 from eigenparts.cli.suppress_output import blender_is_quiet as quiet
-from eigenparts.operators.mesh_state import palette, state
+from eigenparts.operators.mesh_state import palette
+from eigenparts.operators.mesh_state.state import read
 from examples import Bone, Character, Pose
 from examples.rig import bone_motions
 from examples.skinning import blend_skinning
@@ -89,7 +90,7 @@ def segment(obj: bpy.types.Object, **choice: float) -> None:
 
 def level_of(obj: bpy.types.Object) -> tuple[int, int, int]:
     """Return the level that an object shows, how many there are, and how many parts it shows."""
-    summary = state.summarize(obj.data)
+    summary = read(obj.data).summary
     return summary.level, summary.n_levels, len(summary.parts)
 
 

@@ -7,6 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ...choices import MODES
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
 from ...surface.ties import ROUNDING
@@ -17,7 +18,6 @@ from ..faces.level_cuts import cut_arcs
 from ..hierarchy.levels import Hierarchy
 
 BODY = 0
-MODES = ("features", "nested")
 
 
 @dataclass(frozen=True, eq=False)
