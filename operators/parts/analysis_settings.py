@@ -62,8 +62,8 @@ class AnalysisInput:
 
 def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:
     """Return the mesh of an object, posed if that is wanted, and the keyword arguments of the engine."""
-    arrays = mesh_arrays.read_object(context, obj, settings.use_modifiers)
-    return AnalysisInput(obj.name, arrays, engine_options(obj.data, settings))
+    options = engine_options(obj.data, settings)
+    return AnalysisInput(obj.name, mesh_arrays.read_object(context, obj, settings.use_modifiers), options)
 
 
 def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> dict[str, Any]:

@@ -16,8 +16,7 @@ import numpy as np
 
 from ... import compute
 from ..jobs import recent_analyses
-from ..mesh_state import analysis_writer, function_hints
-from ..mesh_state.state import read as read_state
+from ..mesh_state import analysis_writer, function_hints, state
 from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import Messages
 from ..outputs import part_writer
@@ -69,7 +68,7 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
     Refusal
         If something of the user's stands where results belong, or the settings do not fit the mesh.
     """
-    part_writer.refuse_foreign_results(read_state(obj.data))
+    part_writer.refuse_foreign_results(state.read(obj.data))
     return read_input(context, obj, settings)
 
 
@@ -101,15 +100,14 @@ def write(
         One of ``level``, ``threshold`` and ``n_parts``; the default level if there is none.
     """
     with all_or_nothing(mesh):
-        warnings = store(mesh, result)
+        lost = analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
         labels = part_writer.segment_mesh(mesh, mode=mode, **(choice or {}))
-    infos = (_summary(len(labels.parts), result.seconds), function_hints.sentence(read_state(mesh).function_hints))
-    return Segmented(labels, Messages(infos, (*result.warnings, *warnings, *labels.warnings)))
-
-
-def store(mesh: bpy.types.Mesh, result: AnalysisResult) -> tuple[str, ...]:
-    """Put an analysis on its mesh, not its parts, and return warnings."""
-    return analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
+    n_parts, seconds = len(labels.parts), result.seconds
+    is_divided = f"{n_parts} parts ({seconds:.1f} s)."
+    is_whole = f"No features: the mesh is one part ({seconds:.1f} s)."
+    hint = function_hints.sentence(function_hints.rows_of(result.hints))
+    infos = (is_divided if n_parts > 1 else is_whole, hint)
+    return Segmented(labels, Messages(infos, (*result.warnings, *lost, *labels.warnings)))
 
 
 def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) -> AnalysisResult:
@@ -132,9 +130,3 @@ def _description(field: Any) -> str:
     if isinstance(field, int):
         return f"Eigenfunction {field}"
     return "Diffusion" if isinstance(field, str) else "Own values"
-
-
-def _summary(n_parts: int, seconds: float) -> str:
-    if n_parts == 1:
-        return f"No features: the mesh is one part ({seconds:.1f} s)."
-    return f"{n_parts} parts ({seconds:.1f} s)."

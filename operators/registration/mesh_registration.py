@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 
 import bpy
 
-from ..mesh_state import registration_record
+from ..mesh_state import analysis_writer, registration_record
 from ..mesh_state.corrected_analysis import corrected
 from ..mesh_state.part_table import PartTable
 from ..mesh_state.references import registered_objects
@@ -159,7 +159,8 @@ def write_target(
     """
     part_writer.refuse_foreign_results(read(mesh))
     with all_or_nothing(mesh):
-        lost = mesh_segmentation.store(mesh, shape.result)
+        result = shape.result
+        lost = analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
         part_writer.show_registered(
             mesh,
             shape.labels,
