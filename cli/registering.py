@@ -49,7 +49,7 @@ class Register:
         chosen_parts = {"choice": choice_of(options), "mirrored": options.mirrored}
         return {"command": "register", **given, **chosen_parts, "source": source}
 
-    def open_and_divide(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[Report]:
         """Leave a file open with its meshes divided, and return a row for each."""
         # The reference opens a file of its own, so it comes first.
         reference = self._reference

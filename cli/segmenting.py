@@ -26,7 +26,7 @@ class Segment:
         given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
         return {"command": "segment", **given, "choice": choice_of(options)}
 
-    def open_and_divide(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[Report]:
         """Leave a file open with its meshes divided, and return a row for each."""
         return report_each(chosen_objects(formats.load(path), self._options.object), self._divide)
 

@@ -37,7 +37,7 @@ class Transfer:
         given = {"object": options.object, "layers": options.layers, "mirrored": options.mirrored}
         return {"command": "transfer", **given, "source": source}
 
-    def open_and_divide(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[Report]:
         """Leave a file open whose meshes have the layers of the source, and return a row for each."""
         # The source opens a file of its own, so it comes first.
         source = self._source

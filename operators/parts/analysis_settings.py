@@ -14,7 +14,7 @@ from .choice_items import ATTRIBUTE, EIGENFUNCTION, word
 
 @dataclass(frozen=True)
 class AnalysisSettings:
-    """What an analysis is asked for, named as the properties of the operators.
+    """Settings of an analysis, named as the properties of the operators.
 
     Attributes
     ----------

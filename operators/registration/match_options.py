@@ -10,7 +10,7 @@ from ..mesh_state.registration_record import Match
 
 @dataclass(frozen=True)
 class MatchOptions:
-    """What the user asks of a matching.
+    """Options of a matching.
 
     Attributes
     ----------

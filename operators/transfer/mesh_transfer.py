@@ -35,7 +35,7 @@ FOUND_BY = {
 
 @dataclass(frozen=True)
 class TransferSettings:
-    """What is transferred and how.
+    """Layers of a transfer and how they are written.
 
     Attributes
     ----------
