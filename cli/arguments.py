@@ -4,6 +4,7 @@ import argparse
 import shlex
 from pathlib import Path
 
+from .. import compute
 from ..operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS_OF_FILES
 from .formats import FORMATS
 
@@ -119,8 +120,8 @@ def _add_division(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         "--shells",
-        choices=["bridged", "largest", "separate"],
-        default="bridged",
+        choices=compute.SHELLS,
+        default=compute.SHELLS[0],
         help="loose parts are analyzed with the largest where they prolong it (default), not at all, or each by itself",
     )
     choice = command.add_mutually_exclusive_group()
@@ -129,7 +130,7 @@ def _add_division(command: argparse.ArgumentParser) -> None:
     choice.add_argument("--parts", metavar="N", type=int, dest="n_parts", help="how many parts, the body included")
     command.add_argument(
         "--mode",
-        choices=["nested", "features"],
+        choices=compute.MODES,
         help="parts inside parts (default), or only what stands out at this level",
     )
 

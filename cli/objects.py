@@ -10,6 +10,7 @@ from ..compute.errors import EngineError
 from ..operators.messages.sentences import Messages
 from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_settings import AnalysisSettings
+from ..operators.parts.choice_items import ATTRIBUTE, EIGENFUNCTION, identifier
 from ..operators.parts.mesh_segmentation import AnalysisResult
 from .report import Report, part_rows
 
@@ -30,12 +31,12 @@ def report_each(objects: list[bpy.types.Object], work: Callable[[bpy.types.Objec
 
 def analysis_settings(options: argparse.Namespace) -> AnalysisSettings:
     """Return the settings of the analysis for the options that were given."""
-    shells = options.shells.upper()
-    if options.field == "diffusion":
-        return AnalysisSettings("DIFFUSION", shells=shells)
+    shells = identifier(options.shells)
+    if options.field in compute.FIELDS:
+        return AnalysisSettings(identifier(options.field), shells=shells)
     if options.field.isdecimal():
-        return AnalysisSettings("EIGENFUNCTION", eigenfunction=int(options.field), shells=shells)
-    return AnalysisSettings("ATTRIBUTE", attribute=options.field, shells=shells)
+        return AnalysisSettings(EIGENFUNCTION, eigenfunction=int(options.field), shells=shells)
+    return AnalysisSettings(ATTRIBUTE, attribute=options.field, shells=shells)
 
 
 def row_of(

@@ -9,7 +9,7 @@ import bpy
 
 from ... import compute
 from ..mesh_data import mesh_arrays
-from .choice_items import ATTRIBUTE, EIGENFUNCTION, word
+from .choice_items import ATTRIBUTE, EIGENFUNCTION, identifier, word
 
 
 @dataclass(frozen=True)
@@ -19,23 +19,23 @@ class AnalysisSettings:
     Attributes
     ----------
     field : str
-        "DIFFUSION", "EIGENFUNCTION" or "ATTRIBUTE".
+        One of ``FIELD_ITEMS``.
     eigenfunction : int
         Number of the eigenfunction, from 1.
     attribute : str
         Name of the attribute with the values of the field.
     order, boundary, shells : str
-        As the properties of ``AnalysisOptions``.
+        Each one of ``ORDER_ITEMS``, ``BOUNDARY_ITEMS`` and ``SHELL_ITEMS``.
     use_modifiers : bool
         Whether the mesh is read as its modifiers leave it.
     """
 
-    field: str = "DIFFUSION"
+    field: str = identifier(compute.FIELDS[0])
     eigenfunction: int = 1
     attribute: str = ""
-    order: str = "AUTO"
-    boundary: str = "NEUMANN"
-    shells: str = "BRIDGED"
+    order: str = identifier(compute.ORDERS[0])
+    boundary: str = identifier(compute.BOUNDARIES[0])
+    shells: str = identifier(compute.SHELLS[0])
     use_modifiers: bool = False
 
 
