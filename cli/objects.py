@@ -49,7 +49,7 @@ def row_of(
     return {
         "name": obj.name,
         "level": labels.level,
-        "n_levels": result.stored.hierarchy.n_levels,
+        "n_levels": result.stored.part_tree.hierarchy.n_levels,
         "parts": part_rows(obj.data, labels),
         "seconds": round(result.seconds, 3),
         "warnings": list(messages.warnings),

@@ -1,7 +1,10 @@
 """The words that an analysis and a division can be asked for by, the default first; importing them loads nothing."""
 
-# Which arcs of a level become parts: what lies between features too, or features only.
-MODES = ("nested", "features")
+# What lies between features is a part too: all levels up to the chosen one are overlaid.
+NESTED = "nested"
+# Only the features that protrude are parts.
+FEATURES = "features"
+MODES = (NESTED, FEATURES)
 # What is done with a mesh of several shells: those that prolong the largest are bridged to it, only the largest is
 # analyzed, or each that is no detail by itself.
 SHELLS = ("bridged", "largest", "separate")

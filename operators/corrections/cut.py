@@ -72,7 +72,7 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     part_writer.refuse_foreign_results(state)
     level, mode, shells = state.level, state.mode, state.shells
     profile, crossings = corrected_analysis.crossings(state, state.border_source)
-    arcs = [pieces.arc[pieces.of_face] for pieces in state.analysis.branches]
+    arcs = state.analysis.part_tree.arcs_of_faces
     with normals_kept(mesh):
         faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
     for number, arc in enumerate(arcs):
@@ -91,8 +91,8 @@ def move_borders(state: MeshState) -> None:
         # Faces that were given to a part by hand do not follow arcs, so these are given to theirs in the same way.
         paint.repaint(state, np.where(moved != labels, moved, state.painted))
         return
-    cuts = compute.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
-    arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
+    cuts = analysis.part_tree.cut_arcs(level, mode)
+    arcs = analysis.part_tree.arcs_of_faces
     for arc, cut in zip(arcs, cuts, strict=True):
         # The last arc of a tree is a root, which is body at every level.
         arc_of_part = np.full(int(moved.max(initial=0)) + 1, len(cut) - 1)

@@ -29,9 +29,9 @@ from .stored_analysis import (
     BorderSource,
     StoredAnalysis,
     has_trees,
-    packed_analysis,
     packed_branches,
     packed_source,
+    packed_tree,
     write_branches,
     write_source,
 )
@@ -46,9 +46,10 @@ def store(
 ) -> tuple[str, ...]:
     """Put an analysis on the mesh it was made from, in place of an earlier one, and return warnings for the user."""
     earlier = read(mesh)
-    has_same_parts = has_trees(earlier.stored, analysis.hierarchy)
+    part_tree = analysis.part_tree
+    has_same_parts = has_trees(earlier.stored, part_tree.hierarchy)
     kept = _kept(earlier, (*CHOICES, *OF_PARTS) if has_same_parts else CHOICES)
-    items, painted, warnings = _kept_corrections(earlier, analysis, has_same_parts)
+    items, painted, warnings = _kept_corrections(earlier, part_tree, has_same_parts)
     values = {
         VERSION: SCHEMA,
         FINGERPRINT: fingerprint(mesh),
@@ -56,16 +57,16 @@ def store(
         SHELLS: analysis.shells,
         **kept,
         **corrections.packed_items(items),
-        **packed_analysis(analysis),
+        **packed_tree(part_tree),
         **packed_source(source),
         **function_hints.packed_hints(hints),
     }
     if painted is not None:
         corrections.write_painted(mesh, painted)
     corrections.drop_redrawn(mesh)
-    n_trees = len(analysis.branches)
+    n_trees = len(part_tree.trees)
     remove_own_attributes(mesh, [attribute.name for attribute in BRANCHES[n_trees:] + ARCS[n_trees:]])
-    write_branches(mesh, analysis.branches)
+    write_branches(mesh, part_tree.branches)
     write_source(mesh, source)
     replace(mesh, values)
     return warnings
@@ -90,18 +91,17 @@ def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _kept_corrections(
-    earlier: MeshState, analysis: StoredAnalysis, has_same_parts: bool
+    earlier: MeshState, part_tree: compute.PartTree, has_same_parts: bool
 ) -> tuple[tuple[compute.Correction, ...], np.ndarray | None, tuple[str, ...]]:
     """Return the earlier corrections with the numbers that their parts have now, faces painted anew, and warnings."""
     items = earlier.corrections
     if not items or has_same_parts:
         return items, None, ()
     try:
-        before = earlier.divided
+        before = earlier.analysis_of_any_shape.part_tree
     except Refusal:
         return (), None, (LOST,)
-    after = compute.Divided(analysis.hierarchy, analysis.branches, face_areas(earlier.mesh))
-    partners = compute.carried(items, before, after)
+    partners = compute.carried(items, before, part_tree, face_areas(earlier.mesh))
     painted = compute.carried_painting(earlier.painted, items, partners)
-    kept = compute.renumbered(items, partners, before.hierarchy, after.hierarchy)
+    kept = compute.renumbered(items, partners, before.hierarchy, part_tree.hierarchy)
     return kept, painted, (LOST,) if len(kept) < len(items) else ()

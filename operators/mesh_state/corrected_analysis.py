@@ -22,8 +22,8 @@ def corrected(state: MeshState) -> StoredAnalysis:
     analysis, items = state.analysis, state.corrections
     if not compute.needs_faces(items) or state.redrawn is None:
         return with_items(state, items)
-    branches, corrections = state.redrawn
-    return replace(analysis, branches=branches, corrections=corrections)
+    part_tree, corrections = state.redrawn
+    return replace(analysis, part_tree=part_tree, corrections=corrections)
 
 
 def with_items(
@@ -38,33 +38,29 @@ def with_items(
     """
     analysis = state.analysis
     if not compute.needs_faces(items):
-        return replace(analysis, corrections=compute.undivided(analysis.branches, items))
+        return replace(analysis, corrections=compute.undivided(analysis.part_tree, items))
     painted = state.painted if painted is None else painted
-    branches, corrections = compute.redraw(
-        state.divided, state.closing_heights, items, painted, state.faces.relief, state.faces.graph
-    )
-    return replace(analysis, branches=branches, corrections=corrections)
+    part_tree, corrections = compute.redraw(analysis.part_tree, items, painted, state.faces.relief, state.faces.graph)
+    return replace(analysis, part_tree=part_tree, corrections=corrections)
 
 
 def crossings(state: MeshState, source: BorderSource) -> tuple[compute.EdgeProfile, compute.Crossings]:
     """Return where the borders of the parts that a mesh shows cross its edges, and the arcs these refer to."""
-    base, analysis = state.analysis, corrected(state)
+    whole, analysis = state.analysis.part_tree, corrected(state)
     level, mode = state.level, state.mode
     corrections = analysis.corrections or compute.Corrections()
-    labels = compute.label_branches(
-        analysis.hierarchy, analysis.branches, level=level, mode=mode, corrections=corrections
-    )
-    whole, drawn = state.divided, ()
+    labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=corrections)
+    drawn = ()
     if compute.needs_faces(corrections.items):
         relief = state.faces.relief
         try:
-            drawn = compute.drawn_borders(whole, source.closing_heights, corrections, labels.resting, relief)
+            drawn = compute.drawn_borders(whole, corrections, labels.resting, relief)
         except LookupError as error:
             # A level that a correction says it was made at has not the part it changes.
             raise Refusal(DAMAGED) from error
-    cuts = compute.cut_arcs(base.hierarchy, base.branches, level, mode, corrections.branch_levels)
+    cuts = whole.cut_arcs(level, mode, corrections.branch_levels)
     joined = compute.joined_parts(corrections, labels.resting)
-    return compute.corrected_crossings(source.profile, whole, source.closing_heights, cuts, drawn, joined)
+    return compute.corrected_crossings(source.profile, whole, cuts, drawn, joined)
 
 
 def peak_within(state: MeshState, item: compute.Correction, faces: np.ndarray) -> float:
@@ -75,8 +71,8 @@ def peak_within(state: MeshState, item: compute.Correction, faces: np.ndarray) -
     Refusal
         If the part has no border along the field.
     """
-    hill = _hill(state, item)
-    return hill.upward * (state.faces.relief.peak(hill, faces) - hill.border) / state.analysis.hierarchy.value_range
+    hill, value_range = _hill(state, item), state.analysis.part_tree.hierarchy.value_range
+    return hill.upward * (state.faces.relief.peak(hill, faces) - hill.border) / value_range
 
 
 def refuse_without_border(state: MeshState, item: compute.Correction) -> None:
@@ -92,7 +88,7 @@ def refuse_uncorrectable(state: MeshState) -> None:
 
 def free_part(state: MeshState) -> int:
     """Return a number for a part of one's own."""
-    first = compute.first_own_part(state.analysis.hierarchy.trees[0])
+    first = compute.first_own_part(state.analysis.part_tree.trees[0])
     taken = max((number for item in state.corrections for number in (item.part, item.other)), default=0)
     if taken >= first + MOST_OWN_PARTS - 1:
         raise Refusal("There are too many corrections; remove some first.")
@@ -100,8 +96,8 @@ def free_part(state: MeshState) -> int:
 
 
 def _hill(state: MeshState, item: compute.Correction) -> compute.Hill:
-    _ = state.analysis
+    part_tree = state.analysis.part_tree
     try:
-        return compute.hill_of(state.divided, state.closing_heights, state.corrections, item)[1]
+        return compute.hill_of(part_tree, state.corrections, item)
     except LookupError:
         raise Refusal("This part has no border along the field; assign faces to it instead.") from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -54,14 +55,14 @@ def write_painted(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
 
 
 def write_redrawn(
-    mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...], corrections: compute.Corrections
+    mesh: bpy.types.Mesh, part_tree: compute.PartTree, corrections: compute.Corrections
 ) -> dict[str, Any]:
     """Write the branch of each face as corrections divide them, and return what goes into the state beside it."""
     if not compute.needs_faces(corrections.items):
         return drop_redrawn(mesh)
-    write_attribute(mesh, PIECE, branches[0].of_face)
+    write_attribute(mesh, PIECE, part_tree.branches[0].of_face)
     sides = {"side": packed_array(corrections.side), "painted": packed_array(corrections.painted)}
-    return {REDRAWN: {**packed_branches(branches), **sides}}
+    return {REDRAWN: {**packed_branches(part_tree.branches), **sides}}
 
 
 def drop_redrawn(mesh: bpy.types.Mesh) -> dict[str, Any]:
@@ -71,14 +72,14 @@ def drop_redrawn(mesh: bpy.types.Mesh) -> dict[str, Any]:
 
 
 def read_redrawn(
-    mesh: bpy.types.Mesh, stored: Any, hierarchy: compute.Hierarchy, items: tuple[compute.Correction, ...]
-) -> tuple[tuple[compute.Branches, ...], compute.Corrections] | None:
-    """Return the redrawn branches; None if they are not there or damaged, so that they have to be made again."""
+    mesh: bpy.types.Mesh, stored: Any, part_tree: compute.PartTree, items: tuple[compute.Correction, ...]
+) -> tuple[compute.PartTree, compute.Corrections] | None:
+    """Return a part tree with its redrawn branches; None if they are not there, or damaged."""
     group = stored.get(REDRAWN)
     if not hasattr(group, "to_dict") or PIECE.name not in own_names(mesh) or PIECE.name not in mesh.attributes:
         return None
     try:
-        branches = unpacked_branches(group, [read_own_integers(mesh, PIECE)] * len(hierarchy.trees))
+        branches = unpacked_branches(group, [read_own_integers(mesh, PIECE)] * len(part_tree.trees))
         side, painted = unpacked_array(group["side"], "int64"), unpacked_array(group["painted"], "int64")
         n_branches = branches[0].arc.size
         is_sound = (
@@ -87,12 +88,12 @@ def read_redrawn(
             and lie_within(painted, -1, _n_numbers(stored))
             and all(
                 pieces.arc.size == n_branches and are_sound_branches(pieces, tree.parent.size)
-                for pieces, tree in zip(branches, hierarchy.trees, strict=True)
+                for pieces, tree in zip(branches, part_tree.trees, strict=True)
             )
         )
     except UNREADABLE:
         return None
-    return (branches, compute.Corrections(items, side, painted)) if is_sound else None
+    return (replace(part_tree, branches=branches), compute.Corrections(items, side, painted)) if is_sound else None
 
 
 def _n_numbers(stored: Any) -> int:

@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 
 from ... import compute
-from ..mesh_data.mesh_arrays import face_areas, fingerprint
+from ..mesh_data.mesh_arrays import fingerprint
 from ..messages.user_errors import Refusal
 from . import (
     bone_layout,
@@ -154,20 +154,9 @@ class MeshState:
         return stored_analysis.unpacked_analysis(self.mesh, self.readable, self.shells)
 
     @cached_property
-    def closing_heights(self) -> tuple[np.ndarray, ...]:
-        """For each tree the (A,) values of the field at which arcs close; raises a Refusal if they are not there."""
-        return stored_analysis.unpacked_closing_heights(self.readable)
-
-    @cached_property
     def border_source(self) -> BorderSource:
         """What borders are cut from; raises a Refusal if it is not there."""
-        return stored_analysis.unpacked_source(self.mesh, self.readable, self.closing_heights)
-
-    @cached_property
-    def divided(self) -> compute.Divided:
-        """The analysis as the engine looks parts up in it, also where the mesh was moved since."""
-        analysis = self.analysis_of_any_shape
-        return compute.Divided(analysis.hierarchy, analysis.branches, face_areas(self.mesh))
+        return stored_analysis.unpacked_source(self.mesh, self.readable, self.analysis.part_tree)
 
     @cached_property
     def faces(self) -> AnalyzedFaces:
@@ -185,9 +174,9 @@ class MeshState:
         return corrections.read_painted(self.mesh)
 
     @cached_property
-    def redrawn(self) -> tuple[tuple[compute.Branches, ...], compute.Corrections] | None:
-        """The branches as corrections divide them; None if they are not stored, or cannot be used."""
-        return corrections.read_redrawn(self.mesh, self.readable, self.analysis.hierarchy, self.corrections)
+    def redrawn(self) -> tuple[compute.PartTree, compute.Corrections] | None:
+        """The part tree with its branches as corrections divide them; None if they have to be redrawn."""
+        return corrections.read_redrawn(self.mesh, self.readable, self.analysis.part_tree, self.corrections)
 
     @cached_property
     def parts(self) -> PartTable:

@@ -34,18 +34,15 @@ class StoredAnalysis:
 
     Attributes
     ----------
-    hierarchy : Hierarchy
+    part_tree : PartTree
         Without the pairs that are noise.
-    branches : tuple of Branches
-        One for each tree.
     shells : str
         What was done with loose parts, one of ``compute.SHELLS``.
     corrections : Corrections, optional
-        What was changed by hand; it refers to these branches.
+        What was changed by hand; it refers to the branches of this tree.
     """
 
-    hierarchy: compute.Hierarchy
-    branches: tuple[compute.Branches, ...]
+    part_tree: compute.PartTree
     shells: str
     corrections: compute.Corrections | None = None
 
@@ -59,22 +56,22 @@ class BorderSource:
     profile : EdgeProfile
         Of the edges of the mesh.
     vertex_heights : (V,) float64
-    closing_heights : tuple of (A,) float64
-        For each tree, the value of the field at which each arc closes.
     """
 
     profile: compute.EdgeProfile
     vertex_heights: np.ndarray
-    closing_heights: tuple[np.ndarray, ...]
 
 
-def packed_analysis(analysis: StoredAnalysis) -> dict[str, Any]:
-    """Return an analysis as groups of the state."""
-    hierarchy = analysis.hierarchy
+def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
+    """Return the tables of a part tree as groups of the state; the measures of arcs stand beside their tree."""
+    hierarchy = part_tree.hierarchy
+    arcs = enumerate(zip(hierarchy.trees, part_tree.measures, strict=True))
+    closing = enumerate(part_tree.closing_heights)
     return {
         HIERARCHY: packed(hierarchy, _features(hierarchy)),
-        **{TREE.format(i): packed(tree) for i, tree in enumerate(hierarchy.trees)},
-        **packed_branches(analysis.branches),
+        **{TREE.format(i): packed(tree) | packed(measures) for i, (tree, measures) in arcs},
+        **{CLOSING_HEIGHTS.format(i): packed_array(heights) for i, heights in closing},
+        **packed_branches(part_tree.branches),
     }
 
 
@@ -85,9 +82,7 @@ def packed_branches(branches: tuple[compute.Branches, ...]) -> dict[str, Any]:
 
 def packed_source(source: BorderSource) -> dict[str, Any]:
     """Return what goes into the state of the source of borders, beside its attributes."""
-    heights = enumerate(source.closing_heights)
-    closing = {CLOSING_HEIGHTS.format(i): packed_array(heights_of_tree) for i, heights_of_tree in heights}
-    return {INSIDE_EDGES: source.profile.heights[:, 1:-1].shape[1], **closing}
+    return {INSIDE_EDGES: source.profile.heights[:, 1:-1].shape[1]}
 
 
 def write_branches(mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...]) -> None:
@@ -108,17 +103,12 @@ def write_source(mesh: bpy.types.Mesh, source: BorderSource) -> None:
 def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAnalysis:
     """Return the analysis in a state; raises a Refusal if it is damaged."""
     try:
-        trees = tuple(
-            compute.ArcTree(**unpacked(group[TREE.format(i)], compute.ArcTree)) for i in range(_n_trees(group))
-        )
-        hierarchy = compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees)
-        of_faces = [read_own_integers(mesh, attribute) for attribute, _ in zip(BRANCHES, trees, strict=False)]
-        branches = unpacked_branches(group, of_faces)
+        part_tree = _unpacked_tree(mesh, group)
     except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
-    if not is_sound(hierarchy, branches):
+    if not is_sound(part_tree):
         raise Refusal(DAMAGED)
-    return StoredAnalysis(hierarchy, branches, shells)
+    return StoredAnalysis(part_tree, shells)
 
 
 def unpacked_branches(group: Any, of_faces: list[np.ndarray]) -> tuple[compute.Branches, ...]:
@@ -129,8 +119,8 @@ def unpacked_branches(group: Any, of_faces: list[np.ndarray]) -> tuple[compute.B
     )
 
 
-def unpacked_source(mesh: bpy.types.Mesh, group: Any, closing: tuple[np.ndarray, ...]) -> BorderSource:
-    """Return what borders are cut from; raises a Refusal if it is damaged, or gone since the borders were cut."""
+def unpacked_source(mesh: bpy.types.Mesh, group: Any, part_tree: compute.PartTree) -> BorderSource:
+    """Return what the borders of a part tree are cut from; raises a Refusal if it is damaged, or they were cut."""
     try:
         n_inside = min(2, max(0, int(group[INSIDE_EDGES])))
     except UNREADABLE as error:
@@ -140,28 +130,11 @@ def unpacked_source(mesh: bpy.types.Mesh, group: Any, closing: tuple[np.ndarray,
     edges, heights = read_edges(mesh), vertex_heights(mesh)
     inside = read_own_floats(mesh, EDGE_HEIGHTS, 2).reshape(-1, 2)[:, :n_inside].astype(np.float64)
     along = np.column_stack([heights[edges[:, 0]], inside, heights[edges[:, 1]]])
-    arcs = tuple(read_own_integers(mesh, attribute) for attribute, _ in zip(ARCS, closing, strict=False))
-    if not all(lie_within(arc, -1, len(values)) for arc, values in zip(arcs, closing, strict=True)):
+    arcs = tuple(read_own_integers(mesh, attribute) for attribute, _ in zip(ARCS, part_tree.trees, strict=False))
+    if not all(lie_within(arc, -1, len(values)) for arc, values in zip(arcs, part_tree.closing_heights, strict=True)):
         raise Refusal(DAMAGED)
     along[(arcs[0][edges] < 0).any(axis=1)] = np.nan
-    return BorderSource(compute.EdgeProfile(edges, along, arcs), heights, closing)
-
-
-def unpacked_closing_heights(group: Any) -> tuple[np.ndarray, ...]:
-    """Return for each tree the (A,) values of the field at which arcs close; raises a Refusal if they are damaged."""
-    try:
-        trees = range(_n_trees(group))
-        heights = tuple(unpacked_array(group[CLOSING_HEIGHTS.format(i)], "float64") for i in trees)
-        saddles = [unpacked_array(group[TREE.format(i)]["saddle"], "int64") for i in trees]
-    except UNREADABLE as error:
-        raise Refusal(DAMAGED) from error
-    # Only a root and whole shells close nowhere.
-    if not all(
-        values.shape == saddle.shape and np.isfinite(values[saddle >= 0]).all()
-        for values, saddle in zip(heights, saddles, strict=True)
-    ):
-        raise Refusal(DAMAGED)
-    return heights
+    return BorderSource(compute.EdgeProfile(edges, along, arcs), heights)
 
 
 def has_trees(group: Any, hierarchy: compute.Hierarchy) -> bool:
@@ -181,8 +154,24 @@ def vertex_heights(mesh: bpy.types.Mesh) -> np.ndarray:
     return read_own_floats(mesh, HEIGHT).astype(np.float64)
 
 
-def _n_trees(group: Any) -> int:
-    return 2 if TREE.format(1) in group else 1
+def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
+    n_trees = 2 if TREE.format(1) in group else 1
+    tables = [group[TREE.format(i)] for i in range(n_trees)]
+    trees = tuple(compute.ArcTree(**unpacked(table, compute.ArcTree)) for table in tables)
+    return compute.PartTree(
+        hierarchy=compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees),
+        measures=tuple(compute.ArcMeasures(**unpacked(table, compute.ArcMeasures)) for table in tables),
+        closing_heights=tuple(_unpacked_closing_heights(group, i, tree) for i, tree in enumerate(trees)),
+        branches=unpacked_branches(group, [read_own_integers(mesh, attribute) for attribute in BRANCHES[:n_trees]]),
+    )
+
+
+def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> np.ndarray:
+    """Return the (A,) values of the field at which arcs close; only a root and whole shells close nowhere."""
+    heights = unpacked_array(group[CLOSING_HEIGHTS.format(number)], "float64")
+    if heights.shape != tree.saddle.shape or not np.isfinite(heights[tree.saddle >= 0]).all():
+        raise ValueError("closing heights")
+    return heights
 
 
 def _features(hierarchy: compute.Hierarchy) -> slice:

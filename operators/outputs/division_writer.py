@@ -18,7 +18,7 @@ from .part_rows import list_corrections, list_parts
 def write_parts(
     state: MeshState,
     labels: compute.BranchLabels | compute.FaceLabels,
-    branches: tuple[compute.Branches, ...],
+    part_tree: compute.PartTree,
     parts: PartTable,
     changes: dict[str, Any],
     items: tuple[compute.Correction, ...] | None = None,
@@ -34,7 +34,7 @@ def write_parts(
     items : tuple of Correction, optional
         Those that the parts come from; those of the state if None.
     """
-    mesh, of_faces = state.mesh, labels.of_faces(branches)
+    mesh, of_faces = state.mesh, labels.of_faces(part_tree)
     numbered = number_parts(parts, labels.parts)
     tables = packed_table(numbered, state.parts)
     division = division_of(of_faces, numbered, state.softness)

@@ -58,14 +58,12 @@ def segment(state: MeshState, *, mode: str | None = None, **choice: float) -> co
     refuse_foreign_results(state)
     analysis = corrected_analysis.corrected(state)
     mode = mode or state.mode
-    labels = compute.label_branches(
-        analysis.hierarchy, analysis.branches, mode=mode, corrections=analysis.corrections, **choice
-    )
+    labels = compute.label_branches(analysis.part_tree, mode=mode, corrections=analysis.corrections, **choice)
     is_redrawn = compute.needs_faces(state.corrections) and state.redrawn is None
     with all_or_nothing(state.mesh):
-        redrawn = write_redrawn(state.mesh, analysis.branches, analysis.corrections) if is_redrawn else {}
+        redrawn = write_redrawn(state.mesh, analysis.part_tree, analysis.corrections) if is_redrawn else {}
         changes = {schema.MODE: mode, schema.REGISTRATION: None, **redrawn}
-        write_parts(state, labels, analysis.branches, state.own_parts, changes)
+        write_parts(state, labels, analysis.part_tree, state.own_parts, changes)
     return labels
 
 
@@ -97,22 +95,20 @@ def correct(
     level, mode = state.level, state.mode
     painted = state.painted if painted is None else painted
     analysis = corrected_analysis.with_items(state, items, painted)
-    labels = compute.label_branches(
-        analysis.hierarchy, analysis.branches, level=level, mode=mode, corrections=analysis.corrections
-    )
+    labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=analysis.corrections)
     if changed is not None and changed in labels.resting:
         raise Refusal(corrected_analysis.NO_EFFECT)
     with all_or_nothing(state.mesh):
         write_painted(state.mesh, painted)
-        redrawn = write_redrawn(state.mesh, analysis.branches, analysis.corrections)
+        redrawn = write_redrawn(state.mesh, analysis.part_tree, analysis.corrections)
         changes = {schema.MODE: mode, **packed_items(items), **redrawn}
-        write_parts(state, labels, analysis.branches, state.parts, changes, items)
+        write_parts(state, labels, analysis.part_tree, state.parts, changes, items)
 
 
 def show_registered(
     mesh: bpy.types.Mesh,
     labels: compute.FaceLabels,
-    branches: tuple[compute.Branches, ...],
+    part_tree: compute.PartTree,
     parts: PartTable,
     match: registration_record.Match,
     reference: bpy.types.Object | None = None,
@@ -132,7 +128,7 @@ def show_registered(
     """
     state = read(mesh)
     registration = registration_record.packed_registration(match, reference, state.own_parts)
-    write_parts(state, labels, branches, parts, {schema.MODE: mode or state.mode, **registration})
+    write_parts(state, labels, part_tree, parts, {schema.MODE: mode or state.mode, **registration})
 
 
 def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness: float | None = None) -> None:

@@ -112,12 +112,12 @@ def write(
 
 def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) -> AnalysisResult:
     """Return the part of an analysis that a mesh keeps; knows nothing of Blender either."""
-    branches = analysis.branches(given.arrays.polygon_of_triangle)
+    part_tree = analysis.part_tree(given.arrays.polygon_of_triangle)
     heights = compute.vertex_heights(analysis.surface, analysis.field)
     is_function = isinstance(given.options["field"], int)
     return AnalysisResult(
-        stored=StoredAnalysis(analysis.hierarchy, branches, given.options["shells"]),
-        source=BorderSource(analysis.profile(given.arrays.edges), heights, analysis.closing_heights),
+        stored=StoredAnalysis(part_tree, given.options["shells"]),
+        source=BorderSource(analysis.profile(given.arrays.edges), heights),
         description=_description(given.options["field"]),
         warnings=analysis.warnings,
         seconds=seconds,

@@ -164,7 +164,7 @@ def write_target(
         part_writer.show_registered(
             mesh,
             shape.labels,
-            shape.result.stored.branches,
+            shape.result.stored.part_tree,
             shared.parts,
             match_of(shape, shared),
             reference,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -205,15 +205,14 @@ def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> P
     Refusal
         If it was corrected by hand in another analysis.
     """
-    hierarchy, branches = source.shape.hierarchy, source.shape.branches
-    choice, corrections = shown.choice, None
-    if shown.analysis is not None and _has_trees(shown.analysis.hierarchy, hierarchy):
-        branches, corrections = shown.analysis.branches, shown.analysis.corrections
-        choice = choice or {"level": shown.level}
+    part_tree, choice, corrections = source.shape.part_tree, shown.choice, None
+    if shown.analysis is not None and _has_trees(shown.analysis.part_tree.hierarchy, part_tree.hierarchy):
+        part_tree = replace(part_tree, branches=shown.analysis.part_tree.branches)
+        choice, corrections = choice or {"level": shown.level}, shown.analysis.corrections
     elif shown.analysis is not None and shown.analysis.corrections is not None and shown.analysis.corrections.items:
         raise Refusal(CORRECTED_BEFORE.format(name))
-    labels = compute.label_branches(hierarchy, branches, mode=shown.mode, corrections=corrections, **choice)
-    faces = labels.of_faces(branches).astype(np.int64)
+    labels = compute.label_branches(part_tree, mode=shown.mode, corrections=corrections, **choice)
+    faces = labels.of_faces(part_tree).astype(np.int64)
     matched = compute.with_parts(source.shape, faces, labels.parts, labels.level)
     return PreparedReference(
         name=name, key=source.key, result=source.result, level=labels.level, mode=shown.mode, matched=matched

@@ -43,7 +43,7 @@ REFUSED = [
     ("analysis", ("hierarchy", "pairs", "shape"), ("gone", "all huge", "texts"), DAMAGED),
     ("analysis", ("branches_0", "arc", "values"), ("one huge", "one negative", "texts"), DAMAGED),
     ("analysis", ("branches_0", "area", "dtype"), ("text", "zero"), DAMAGED),
-    ("closing_heights", ("closing_heights_0", "values"), ("gone", "cut short", "no numbers"), DAMAGED),
+    ("analysis", ("closing_heights_0", "values"), ("gone", "cut short", "no numbers"), DAMAGED),
     ("border_source", ("n_inside_edge",), ("gone", "text", "nan"), DAMAGED),
 ]
 
@@ -103,13 +103,12 @@ def test_the_level_is_read_without_trees_and_tables(analyzed):
     state = state_of(analyzed)
     assert 0 < state.shown_level <= state.highest_level
     assert state.n_parts == len(analyzed.data.eigenparts.rows)
-    assert not {"analysis", "analysis_of_any_shape", "parts", "corrections", "closing_heights"} & set(vars(state))
+    assert not {"analysis", "analysis_of_any_shape", "parts", "corrections"} & set(vars(state))
 
 
 def test_a_value_is_decoded_once(analyzed, monkeypatch, extension):
     state = state_of(analyzed)
     assert state.analysis is state.analysis
-    assert state.divided.branches is state.analysis.branches
     monkeypatch.setattr(extension.operators.mesh_state.state, "unpacked_summary", None)
     assert state_of(analyzed).mode == "nested"
 
@@ -156,12 +155,12 @@ def test_an_action_reads_the_mesh_once(analyzed, readings, action):
 
 def test_redrawn_branches_are_stored_again_where_they_were_lost(analyzed):
     bpy.ops.eigenparts.split_part(part=1, position=0.4)
-    branches, corrections = state_of(analyzed).redrawn
+    part_tree, corrections = state_of(analyzed).redrawn
     del analyzed.data[STATE]["pieces"]
     assert state_of(analyzed).redrawn is None
     bpy.ops.eigenparts.segment(level=4)
     again, corrected = state_of(analyzed).redrawn
-    np.testing.assert_array_equal(again[0].of_face, branches[0].of_face)
+    np.testing.assert_array_equal(again.branches[0].of_face, part_tree.branches[0].of_face)
     np.testing.assert_array_equal(corrected.side, corrections.side)
 
 
@@ -169,4 +168,4 @@ def test_an_edited_mesh_still_says_what_it_shows(analyzed):
     before = state_of(analyzed).summary
     analyzed.data.vertices[7].co.x += 0.01
     assert state_of(analyzed).summary == before
-    assert state_of(analyzed).divided.hierarchy.n_levels == before.n_levels
+    assert state_of(analyzed).analysis_of_any_shape.part_tree.hierarchy.n_levels == before.n_levels
