@@ -1,4 +1,4 @@
-"""What parts are called outside Blender."""
+"""Names of parts outside Blender."""
 
 import bpy
 

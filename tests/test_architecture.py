@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "cli": {"compute", "operators"},
     "ui": {
         *("operators.blender", "operators.mesh_state", "operators.messages", "operators.outputs.output_registry"),
-        *("operators.parts.border_lines", "operators.parts.part_outline"),
+        *("operators.parts.border_lines", "operators.parts.part_outline", "operators.mesh_data.selected_meshes"),
     },
 }
 OUTSIDE = {

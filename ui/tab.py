@@ -6,6 +6,7 @@ from bpy.app.translations import pgettext_iface as translated
 from ..operators.blender.known_values import mesh_of, present
 from ..operators.blender.mixins import PanelMixin
 from ..operators.blender.registered_settings import job_status
+from ..operators.mesh_data.selected_meshes import other_meshes
 from ..operators.mesh_state.schema import ABSENT
 from ..operators.mesh_state.state import is_analyzed
 from ..operators.messages.sentences import in_language
@@ -70,12 +71,6 @@ def draw_direction(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
         return
     text = translated("{source} to {target}") if len(others) == 1 else translated("{source} to {count} others")
     layout.label(text=text.format(source=source.name, target=others[0].name, count=len(others)), translate=False)
-
-
-def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Return the selected mesh objects that share no mesh with the active object."""
-    active = context.object
-    return [obj for obj in context.selected_objects if obj.type == "MESH" and (not active or obj.data != active.data)]
 
 
 def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:

@@ -12,8 +12,13 @@ MOST_SHOWN = 3
 
 def packed_hints(hints: tuple[compute.FunctionHint, ...]) -> dict[str, Any]:
     """Return what was judged as a list of the state; nothing where nothing was."""
-    rows = [number for hint in hints for number in (hint.number, hint.n_held, hint.n_protrusions)]
-    return {FUNCTION_HINTS: rows} if rows else {}
+    numbers = [number for row in rows_of(hints) for number in row]
+    return {FUNCTION_HINTS: numbers} if numbers else {}
+
+
+def rows_of(hints: tuple[compute.FunctionHint, ...]) -> list[tuple[int, int, int]]:
+    """Return (number, protrusions held, protrusions of the shape) of each judged function, the best first."""
+    return [(hint.number, hint.n_held, hint.n_protrusions) for hint in hints]
 
 
 def unpacked_hints(rows: Any) -> list[tuple[int, int, int]]:

@@ -48,7 +48,7 @@ def test_out_of_memory_while_an_analysis_is_written_changes_nothing(star_object,
 
 
 @pytest.mark.parametrize(
-    "writer", ["stored_analysis.write_attribute", "division_writer.write_attribute", "registering.match_of"]
+    "writer", ["stored_analysis.write_attribute", "division_writer.write_attribute", "mesh_registration.match_of"]
 )
 def test_a_registration_is_written_to_all_meshes_or_to_none(star, monkeypatch, writer):
     objects = [add_object((1 + k) * star.vertices, star.triangles, f"star {k}") for k in range(3)]
@@ -213,7 +213,7 @@ def found_once(extension, monkeypatch):
     """A transfer finds only once what it writes again and again."""
     from eigenparts.operators.transfer import transfer
 
-    monkeypatch.setattr(transfer, "_transfer", cache_of_one(transfer._transfer))
+    monkeypatch.setattr(transfer, "_map_layers", cache_of_one(transfer._map_layers))
 
 
 def cache_of_one(function):
