@@ -3,8 +3,6 @@
 # The scripting API.
 from .analysis import Analysis as Analysis
 from .analysis import analyze as analyze
-from .analysis import reeb_graph as reeb_graph
-from .analysis import zero_level as zero_level
 from .errors import Cancelled as Cancelled
 from .errors import EngineError as EngineError
 from .errors import FieldError as FieldError
@@ -25,6 +23,8 @@ from .msc.reeb import ReebGraph as ReebGraph
 from .progress import naming as naming
 from .progress import section as section
 from .progress import silent as silent
+from .readings import reeb_graph as reeb_graph
+from .readings import zero_level as zero_level
 from .registration.dense.correspondence import Correspondence as Correspondence
 from .registration.dense.correspondence import correspond as correspond
 from .registration.dense.transfer import fill_unsure as fill_unsure

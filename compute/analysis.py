@@ -9,14 +9,13 @@ from numpy.typing import ArrayLike
 
 from .errors import LevelError, RegistrationError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
-from .fem.matching_basis import solve_for_matching
+from .fem.matching_basis import MatchingBasis
 from .fields.field_choice import DEFAULT_FUNCTIONS, choose_field, n_available
-from .fields.scalar_field import DIFFUSION, Net, ScalarField, eigenfunction_field
+from .fields.scalar_field import DIFFUSION, Net, ScalarField
 from .fields.shell_fields import choose_fields
 from .msc.diagram import PersistenceDiagram
 from .msc.links import links_of
 from .msc.morse_smale import FieldTopology, MorseSmaleComplex
-from .msc.reeb import ReebGraph
 from .progress import Progress, rising, section, silent
 from .segmentation.borders.edge_profile import EdgeProfile, edge_profile
 from .segmentation.borders.level_set_borders import (
@@ -30,13 +29,12 @@ from .segmentation.faces.arc_areas import arc_areas
 from .segmentation.faces.branches import build_branches
 from .segmentation.faces.face_graph import face_graph
 from .segmentation.faces.part_tree import PartTree
-from .segmentation.hierarchy.arc_measures import ArcMeasures, measure_arcs
-from .segmentation.hierarchy.levels import Hierarchy, build_hierarchy
-from .segmentation.hierarchy.shell_bodies import with_bodies
+from .segmentation.hierarchy.arc_measures import ArcMeasures
+from .segmentation.hierarchy.levels import Hierarchy
+from .segmentation.hierarchy.measured_hierarchy import measured_hierarchy
 from .segmentation.modes import NESTED
 from .segmentation.parts.part_labels import Segmentation, label_branches
 from .segmentation.parts.subparts import inserted
-from .segmentation.parts.zero_level import divide_at_zero
 from .surface.cleaning import Surface, analyzed_surface, clean_surface
 from .surface.mesh import Ints, TriangleMesh
 
@@ -53,22 +51,34 @@ APART = (
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """What is known of a mesh after the heavy step; every level is read from it at once.
+    """A mesh with its field and the hierarchy of its features, from which every level is read at once.
+
+    It is made by :func:`analyze`.
 
     Attributes
     ----------
     mesh : TriangleMesh
-        The input.
+        The input; V vertices, T triangles.
     surface : Surface
-        What of it was analyzed.
+        The surface that was analyzed: the input cleaned, its loose parts bridged.
     field : ScalarField
+        The function that the features are those of, on a net of n vertices.
     hierarchy : Hierarchy
+        All pairs of the field by persistence, and the levels.
     measures : tuple of ArcMeasures
-        One for each tree of the hierarchy.
+        The sizes of the arcs, one for each tree of the hierarchy.
     warnings : tuple of str
         Sentences for the user.
     field_choice : "diffusion", int or (V,) array
         The field that was asked for.
+
+    Examples
+    --------
+    >>> analysis = analyze(mesh)
+    >>> analysis.hierarchy.n_levels
+    5
+    >>> analysis.segment(level=4).n_parts
+    6
     """
 
     mesh: TriangleMesh
@@ -81,6 +91,7 @@ class Analysis:
     _topology: FieldTopology
     _arc_of_vertex: tuple[Ints, ...]
     _known_basis: Eigenbasis | None = dataclasses.field(repr=False)
+    _matching: MatchingBasis = dataclasses.field(repr=False)
 
     @property
     def net(self) -> Net:
@@ -89,9 +100,10 @@ class Analysis:
 
     @cached_property
     def eigenbasis(self) -> Eigenbasis:
-        """The eigenfunctions the field was made of; computed when first asked for if the field is the user's.
+        """The eigenfunctions that the field was made of, with their eigenvalues in 1/length².
 
-        Those of the largest shell if each was analyzed by itself.
+        Computed when first asked for if the field is the user's own. Those of the largest shell if each was analyzed
+        by itself.
         """
         if self._known_basis is not None:
             return self._known_basis
@@ -102,26 +114,53 @@ class Analysis:
     def matching_basis(self) -> Eigenbasis:
         """Up to 100 free eigenfunctions for matching and dense maps, with the signs that ``eigenbasis`` has.
 
-        Computed when first asked for and kept.
-        """
-        return self.find_matching_basis(silent)
-
-    def find_matching_basis(self, progress: Progress) -> Eigenbasis:
-        """Return ``matching_basis``, telling how far it is if it has to be computed.
+        Computed when first asked for, which takes seconds, and kept.
 
         Raises
         ------
         RegistrationError
             If each shell was analyzed by itself: there is no one shape to be matched.
         """
+        return self.find_matching_basis(silent)
+
+    def find_matching_basis(self, progress: Progress) -> Eigenbasis:
+        """Return ``matching_basis``, and report progress if it has to be computed.
+
+        Parameters
+        ----------
+        progress : callable
+            ``progress(fraction, text)``; may raise :class:`Cancelled`.
+
+        Returns
+        -------
+        Eigenbasis
+
+        Raises
+        ------
+        RegistrationError
+            If each shell was analyzed by itself: there is no one shape to be matched.
+
+        Examples
+        --------
+        >>> basis = analysis.find_matching_basis(lambda fraction, text: None)
+        >>> basis is analysis.matching_basis
+        True
+        """
         self.require_one_shape()
-        kept = vars(self)
-        if "_matching_basis" not in kept:
-            kept["_matching_basis"] = solve_for_matching(self.surface, self._known_basis, progress)
-        return kept["_matching_basis"]
+        return self._matching.solve(progress)
 
     def require_one_shape(self) -> None:
-        """Raise a RegistrationError if each shell was analyzed by itself: there is nothing to be matched or to move."""
+        """Refuse an analysis of each shell by itself, which has no one shape to be matched or to move.
+
+        Raises
+        ------
+        RegistrationError
+            If each shell was analyzed by itself.
+
+        Examples
+        --------
+        >>> analysis.require_one_shape()
+        """
         if self.surface.is_apart:
             raise RegistrationError(APART)
 
@@ -136,9 +175,28 @@ class Analysis:
         return self.complex.diagram
 
     def complex_at_level(self, level: int | None = None) -> MorseSmaleComplex:
-        """Return the complex with what survives at a level, the default one if None.
+        """Return the complex with what survives at a level.
 
         Where only maxima are features, minima and handles are kept as far as they are as persistent as those.
+
+        Parameters
+        ----------
+        level : int, optional
+            From 0 to ``hierarchy.n_levels - 1``; the default level if None.
+
+        Returns
+        -------
+        MorseSmaleComplex
+
+        Raises
+        ------
+        LevelError
+            If there is no such level.
+
+        Examples
+        --------
+        >>> analysis.complex_at_level(2).euler_characteristic
+        2
         """
         hierarchy = self.hierarchy
         level = hierarchy.default_level if level is None else hierarchy.checked_level(level)
@@ -148,7 +206,7 @@ class Analysis:
 
     @cached_property
     def _ended_at_handles(self) -> "Analysis":
-        hierarchy, arcs, measures = _hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
+        hierarchy, arcs, measures = measured_hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
         return dataclasses.replace(self, hierarchy=hierarchy, measures=measures, _arc_of_vertex=arcs)
 
     def part_tree(self, face_of_triangle: Ints | None = None) -> PartTree:
@@ -158,6 +216,16 @@ class Analysis:
         ----------
         face_of_triangle : (T,) int64, optional
             The polygon each triangle of the input belongs to; the triangles themselves if None.
+
+        Returns
+        -------
+        PartTree
+
+        Examples
+        --------
+        >>> pairs_of_triangles = np.arange(len(mesh.triangles)) // 2
+        >>> analysis.part_tree(pairs_of_triangles).n_faces
+        640
         """
         if face_of_triangle is None:
             return self._triangle_tree
@@ -170,21 +238,60 @@ class Analysis:
     def _part_tree(self, face_of_triangle: Ints) -> PartTree:
         graph = face_graph(self.mesh, self.surface, face_of_triangle)
         face = face_of_triangle[self.surface.input_triangle][self.net.triangle_of_surface]
-        trees, shares = self.hierarchy.trees, []
-        for tree, arc in zip(trees, self._arc_of_vertex, strict=True):
-            rising = -self.field.values if tree.is_of_maxima else self.field.values
-            shares.append(arc_areas(rising, arc, tree, self.net, face))
-        heights = tuple(closing_heights(self.field.values, tree) for tree in trees)
-        branches = build_branches([tree.parent for tree in trees], shares, graph)
+        shares = [
+            arc_areas(self.field.values, arc, tree, self.net, face)
+            for tree, arc in zip(self.hierarchy.trees, self._arc_of_vertex, strict=True)
+        ]
+        heights = tuple(closing_heights(self.field.values, tree) for tree in self.hierarchy.trees)
+        branches = build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
         return PartTree(self.hierarchy, self.measures, heights, branches)
 
     def profile(self, edges: Ints | None = None) -> EdgeProfile:
-        """Return the field along edges (E, 2) of the input, those of its triangles if None."""
+        """Return the field along edges of the input.
+
+        Parameters
+        ----------
+        edges : (E, 2) int64, optional
+            Pairs of input vertices; the edges of its triangles if None.
+
+        Returns
+        -------
+        EdgeProfile
+
+        Examples
+        --------
+        >>> profile = analysis.profile(mesh.edges.vertices[:10])
+        >>> len(profile.heights)
+        10
+        """
         edges = self.mesh.edges.vertices if edges is None else edges
         return edge_profile(self.surface, self.field, self._arc_of_vertex, edges)
 
     def borders(self, level: int | None = None, mode: str = NESTED) -> tuple[Polyline, ...]:
-        """Return the lines where the parts of a level, the default one if None, end on the triangles of the input."""
+        """Return the lines on the triangles of the input along which the parts of a level end.
+
+        Parameters
+        ----------
+        level : int, optional
+            The default level if None.
+        mode : "nested" or "features"
+            As in :meth:`segment`.
+
+        Returns
+        -------
+        tuple of Polyline
+            Each with the ``part`` it cuts off, its ``points`` (n, 3) in the mesh's unit of length, and ``is_closed``.
+
+        Raises
+        ------
+        LevelError
+            If there is no such level.
+
+        Examples
+        --------
+        >>> sorted(line.part for line in analysis.borders())
+        [1, 2, 3, 4, 5]
+        """
         hierarchy, part_tree = self.hierarchy, self.part_tree()
         level = hierarchy.default_level if level is None else hierarchy.checked_level(level)
         cuts = part_tree.cut_arcs(level, mode)
@@ -230,7 +337,16 @@ class Analysis:
 
         References
         ----------
-        .. [1] Reuter, IJCV 2010, section 4.7, on the analysis of subparts.
+        .. [1] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+           Eigenfunctions", IJCV 2010, section 4.7, on the analysis of subparts.
+
+        Examples
+        --------
+        >>> segmentation = analysis.segment(n_parts=5)
+        >>> segmentation.labels.shape
+        (1280,)
+        >>> segmentation.n_parts
+        5
         """
         if essential:
             return self._ended_at_handles.segment(
@@ -265,22 +381,42 @@ def analyze(
     mesh : TriangleMesh
         Any mesh; of several shells those that prolong the largest are analyzed with it.
     field : "diffusion", int or (V,) array
-        The auto diffusion function, the eigenfunction of that number (from 1), or the user's own values.
+        The auto diffusion function (without unit), the eigenfunction of that number (from 1; in 1/length), or the
+        user's own values on the vertices.
     n_functions : int, optional
         Eigenfunctions to compute; 30 for "diffusion", otherwise 12 or as many as needed.
     order : 1, 2, 3 or "auto"
         Degree of the finite elements; "auto" takes cubic ones as long as they are cheap.
     boundary : "neumann" or "dirichlet"
+        Whether the eigenfunctions are free or zero on the boundary of an open mesh.
     shells : "bridged", "largest" or "separate"
         Whether loose parts are bridged where they nearly touch, only the largest one is analyzed, or each that is no
         detail by itself, with parts of its own and what is left of it as a part of its own beside the body.
     progress : callable, optional
-        ``progress(fraction, text)``; may raise :class:`Cancelled`.
+        ``progress(fraction, text)`` is called often; it may raise :class:`Cancelled`.
+
+    Returns
+    -------
+    Analysis
 
     Raises
     ------
-    EngineError
-        With a sentence that says what is wrong with the mesh, the field or the numbers asked for.
+    MeshError, FieldError, SpectrumError
+        With a sentence that says what is wrong with the mesh, the field or the numbers asked for; all are an
+        :class:`EngineError`.
+
+    References
+    ----------
+    .. [1] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+       Eigenfunctions", IJCV 2010, sections 3 and 4.
+    .. [2] Gebal et al., "Shape analysis using the auto diffusion function", SGP 2009.
+
+    Examples
+    --------
+    >>> mesh = TriangleMesh(vertices, triangles)
+    >>> analysis = analyze(mesh)
+    >>> analysis.segment().n_parts
+    6
     """
     progress = rising(progress or silent)
     progress(0.0, "Checking the mesh")
@@ -291,7 +427,7 @@ def analyze(
     net = chosen.field.net
     topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
     progress(0.9, "Ordering the features")
-    hierarchy, arcs, measures = _hierarchy(surface, chosen.field, topology, ends_at_handles=False)
+    hierarchy, arcs, measures = measured_hierarchy(surface, chosen.field, topology, ends_at_handles=False)
     progress(1.0, "Done")
     return Analysis(
         mesh=mesh,
@@ -304,76 +440,15 @@ def analyze(
         _topology=topology,
         _arc_of_vertex=arcs,
         _known_basis=chosen.basis,
+        _matching=MatchingBasis(surface, chosen.basis),
     )
-
-
-def _hierarchy(
-    surface: Surface, scalar_field: ScalarField, topology: FieldTopology, *, ends_at_handles: bool
-) -> tuple[Hierarchy, tuple[Ints, ...], tuple[ArcMeasures, ...]]:
-    """Return the hierarchy, and for each of its trees the arcs of the net's vertices and the measures of the arcs."""
-    hierarchy, arcs = build_hierarchy(
-        topology,
-        minima_are_features=scalar_field.minima_are_features,
-        least_range=scalar_field.least_range,
-        ends_at_handles=ends_at_handles,
-    )
-    if surface.is_apart:
-        hierarchy = with_bodies(hierarchy, _shell_of_vertex(surface, scalar_field.net))
-    measures = (measure_arcs(tree, arc, scalar_field) for tree, arc in zip(hierarchy.trees, arcs, strict=True))
-    return hierarchy, arcs, tuple(measures)
-
-
-def _shell_of_vertex(surface: Surface, net: Net) -> Ints:
-    """Return the shell (n,) of each vertex of a net; -1 for those in no triangle."""
-    shell = np.full(len(net.positions), -1)
-    shell[net.triangles] = surface.mesh.component_of_triangle[net.triangle_of_surface, None]
-    return shell
-
-
-def reeb_graph(analysis: Analysis, *, level: int | None = None) -> ReebGraph:
-    """Return the Reeb graph of the field with the net triangles of each arc.
-
-    Parameters
-    ----------
-    analysis : Analysis
-    level : int, optional
-        Which extrema and saddles to keep; the default level if None.
-
-    Raises
-    ------
-    LevelError
-        If the level does not exist, or has too many critical points.
-    """
-    return analysis.complex_at_level(level).reeb_graph
-
-
-def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
-    """Divide a mesh along the zero level of an eigenfunction: a torso, which no feature divides, into halves.
-
-    Parameters
-    ----------
-    analysis : Analysis
-    function : int
-        Number of the eigenfunction, from 1.
-
-    Raises
-    ------
-    FieldError
-        If there is no such eigenfunction.
-
-    References
-    ----------
-    .. [1] Reuter, IJCV 2010, section 5.1.
-    """
-    basis = analysis.eigenbasis
-    return divide_at_zero(eigenfunction_field(basis, function), analysis.mesh, basis.surface)
 
 
 def _divided_further(analysis: Analysis, whole: Segmentation, part: int, mode: str) -> Segmentation:
     """Analyze one part on its own and put its parts in its place."""
-    own = analyze_part(analysis, whole, part)
+    alone = analyze_part(analysis, whole, part)
     inside = np.flatnonzero(whole.labels == part)
-    return inserted(whole, part, inside, segment_part(own, mode), own.net, analysis.net)
+    return inserted(whole, part, inside, segment_part(alone, mode), alone.net, analysis.net)
 
 
 def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis:
@@ -393,10 +468,10 @@ def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis
     return analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
 
 
-def segment_part(own: Analysis, mode: str = NESTED) -> Segmentation:
+def segment_part(part: Analysis, mode: str = NESTED) -> Segmentation:
     """Divide a part that was analyzed on its own at the level that is usual for parts."""
-    holds_border = own.field.name == DIFFUSION and own.eigenbasis.boundary == "dirichlet"
-    return own.segment(threshold=WITHIN_THRESHOLD / own.field.value_range if holds_border else None, mode=mode)
+    holds_border = part.field.name == DIFFUSION and part.eigenbasis.boundary == "dirichlet"
+    return part.segment(threshold=WITHIN_THRESHOLD / part.field.value_range if holds_border else None, mode=mode)
 
 
 def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:

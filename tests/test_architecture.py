@@ -32,7 +32,7 @@ ORDER = {
     # The path of the data, read from left to right.
     "compute": [
         *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
-        *("registration", "skeletons"),
+        *("readings", "registration", "skeletons"),
     ],
     "compute.segmentation": ["modes", "hierarchy", "faces", "borders", "edits", "parts"],
     "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis, reeb_graph
+from ..analysis import Analysis
 from ..errors import LevelError, MeshError
 from ..msc.reeb import ReebGraph
+from ..readings import reeb_graph
 from ..segmentation.parts.part_labels import BODY
 from ..surface.mesh import Bools, Floats, Ints
 from ..surface.ties import CHOICE, first_largest, first_nearest
