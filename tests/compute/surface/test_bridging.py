@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from compute import EngineError, MeshError, RegistrationError, TriangleMesh, analyze, match, skeleton, zero_level
+from compute.surface.bridging import bridge_shells, large_shells
 from compute.surface.cleaning import bridged_surface, clean_surface
 from tests.shapes import icosphere, joined, rectangle, star, torus
 
@@ -195,3 +196,18 @@ def test_the_zero_level_is_that_of_the_largest_shell():
     first, second = np.split(zero_level(analyze(joined(*CHARACTERS), order=1, shells="separate")).labels, ENDS[:1])
     assert divide_alike(first, zero_level(analyze(CHARACTERS[0], order=1)).labels)
     assert len(set(second.tolist())) == 1
+
+
+def test_a_bridge_has_one_corner_on_one_shell_and_two_on_the_next():
+    mesh = chain(gap=0.02)
+    bridges = bridge_shells(mesh)
+    shell = np.repeat(np.arange(4), len(mesh.vertices) // 4)[bridges.triangles]
+    assert bridges.is_joined.all()
+    assert len(shell) > 0
+    assert (shell[:, 1] == shell[:, 2]).all()
+    assert (np.abs(shell[:, 0] - shell[:, 1]) == 1).all()
+
+
+def test_shells_of_little_area_are_details():
+    mesh = joined(joined(icosphere(2), ball([3, 0, 0], 0.05, 1)), ball([5, 0, 0], 0.07, 1))
+    assert large_shells(mesh).tolist() == [True, True, False]

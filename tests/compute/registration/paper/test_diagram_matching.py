@@ -7,7 +7,7 @@ import pytest
 
 from compute.analysis import Analysis, analyze
 from compute.errors import RegistrationError
-from compute.registration.paper.diagrams_matching import match_diagrams, match_tips, separated_points
+from compute.registration.paper.diagram_matching import match_diagrams, match_tips, separated_points
 from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, moved, shuffled
 
 
