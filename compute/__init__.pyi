@@ -1,10 +1,10 @@
 """The names of the engine that are loaded when they are first asked for; ``__init__.py`` reads where they live here."""
 
 # The scripting API.
-from .analysis import Analysis as Analysis
-from .analysis import analyze as analyze
-from .analysis import reeb_graph as reeb_graph
-from .analysis import zero_level as zero_level
+from .analysis.analysis import Analysis as Analysis
+from .analysis.analyze import analyze as analyze
+from .analysis.readings import reeb_graph as reeb_graph
+from .analysis.readings import zero_level as zero_level
 from .choices import BOUNDARIES as BOUNDARIES
 from .choices import FIELDS as FIELDS
 from .choices import MODES as MODES

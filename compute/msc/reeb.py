@@ -1,4 +1,4 @@
-"""The Reeb graph: how the components of the level sets appear, split, merge and vanish."""
+"""The Reeb graph of the level sets of a field: their components appear, split, merge and vanish at its nodes."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,6 +29,12 @@ class ReebGraph:
         The arc that the middle level of each net triangle lies on.
     arc_of_vertex : (n,) int64
         The arc of each net vertex; -1 for nodes and for vertices in no triangle.
+
+    Examples
+    --------
+    >>> graph = reeb_graph(analysis)
+    >>> graph.n_components
+    1
     """
 
     vertex: Ints

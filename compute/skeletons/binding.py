@@ -5,7 +5,7 @@ from scipy.sparse import coo_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..surface.mesh import Floats, Ints, TriangleMesh
 from ..surface.ties import ROUNDING
 from .embedding import Skeleton

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..surface.mesh import Floats, Ints
 from .joint_tree import join_limbs, pulled_inside, without_short_bones
 from .layout import BoneLayout, layout_of, level_with_tips, with_layout

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..surface.mesh import Floats, Ints
 from .branching import Chain
 from .hubs import Hub, hub_numbers

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..surface.mesh import Floats, Ints
 from ..surface.ties import first_least
 from .joint_tree import JointTree

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis, reeb_graph
+from ..analysis.analysis import Analysis
+from ..analysis.readings import reeb_graph
 from ..errors import LevelError, MeshError
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats

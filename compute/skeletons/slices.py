@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats, Ints
 from ..surface.ties import ROUNDING, evened, first_largest

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..progress import Progress, silent
 from ..registration.dense.point_map import point_map
 from ..registration.eigenfunctions.matching import match

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats
 from ..surface.ties import evened, first_largest, first_nearest

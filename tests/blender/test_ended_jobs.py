@@ -50,7 +50,7 @@ def test_a_cancelled_longer_job_changes_nothing(analyzed, star, monkeypatch, ope
 
 
 def test_out_of_memory_in_the_engine_changes_nothing(analyzed, monkeypatch):
-    from eigenparts.compute import analysis
+    from eigenparts.compute.analysis import analyze as analysis
 
     before = all_of(analyzed.data)
     with monkeypatch.context() as patch:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...analysis import Analysis, analyze_part, segment_part
+from ...analysis.analysis import Analysis, analyze_part, segment_part
 from ...progress import Progress, rising, silent
 from ...segmentation.parts.part_labels import Segmentation
 from .diagram_matching import DiagramMatching, PartPairs, match_diagrams, match_tips

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...choices import FEATURES
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...segmentation.faces.branches import connected_branches, repaired_labels
 from ...segmentation.faces.face_graph import FaceGraph, face_graph
 from ...segmentation.faces.part_tree import PartTree

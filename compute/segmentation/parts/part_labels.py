@@ -85,6 +85,13 @@ class Segmentation:
     level : int
     warnings : tuple of str
         Sentences for the user, such as that a number of parts could not be reached.
+
+    Examples
+    --------
+    >>> segmentation = analysis.segment()
+    >>> areas = dict(zip(segmentation.parts.id.tolist(), segmentation.parts.area.round(1).tolist()))
+    >>> len(areas) == segmentation.n_parts
+    True
     """
 
     labels: NDArray[np.int32]
