@@ -6,8 +6,11 @@ MESH ?=
 OUTPUT ?= demo
 DATA ?=
 NAMES ?=
+FILES ?=
+SHARE ?= 1
+DRAW ?=
 
-.PHONY: help environment demo pictures bench test lint package test-matrix test-window clean
+.PHONY: help environment demo pictures bench check test test-long lint package test-matrix test-window clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1  /p' $(MAKEFILE_LIST)
@@ -25,8 +28,14 @@ bench: environment  ## quick benchmarks, or NAMES="topology slider"; DATA=folder
 	@$(RUN) -m pip install -qq --disable-pip-version-check -r benchmarks/requirements.txt || echo "Some peers are missing."
 	@$(RUN) tools/bench.py $(if $(DATA),--data "$(DATA)") $(NAMES)
 
+check: environment  ## in under a minute: linters, and the tests that a change touches, or those of FILES="compute/fem/space.py"
+	@$(RUN) tools/check.py $(FILES)
+
 test: environment  ## engine tests and Blender tests
-	@OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest -q --numprocesses auto
+	@OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest -q --numprocesses auto -m "not long"
+
+test-long: environment  ## random and repeated tests at length; SHARE=0.2 for a fifth, drawn by the commit or by DRAW=name
+	@OPENBLAS_NUM_THREADS=1 $(RUN) -m pytest -q --numprocesses auto -m long --share=$(SHARE) $(if $(DRAW),--draw="$(DRAW)")
 
 lint: environment  ## ruff and mypy
 	@$(RUN) -m ruff check .

@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+pytest_plugins = ["tests.selection"]
+
 _exit_status = pytest.StashKey[int]()
 
 

@@ -34,7 +34,7 @@ ORDER = {
         *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
         *("registration", "skeletons"),
     ],
-    "compute.segmentation": ["hierarchy", "faces", "borders", "edits", "parts"],
+    "compute.segmentation": ["modes", "hierarchy", "faces", "borders", "edits", "parts"],
     "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],
     "operators": [
         *("blender", "messages", "mesh_data", "mesh_state", "outputs", "jobs", "parts", "corrections", "registration"),
@@ -146,7 +146,7 @@ def test_a_broken_rule_is_noticed(tmp_path, file, line):
         ("compute/fem/space.py", "from .lagrange import basis"),
         ("compute/fem/space.py", "import numpy.linalg"),
         ("compute/__init__.py", "from .skeletons.embedding import skeleton"),
-        ("compute/registration/parts/population.py", "from ..dense.matched_points import source_points"),
+        ("compute/registration/parts/population.py", "from ..dense.point_map import point_map"),
         ("operators/parts/analyze.py", "from ..mesh_state.state import load"),
         ("operators/parts/analyze.py", "from ... import compute"),
         ("ui/panel.py", "from ..operators.mesh_state import state"),

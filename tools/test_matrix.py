@@ -39,7 +39,7 @@ def _try(version: str) -> tuple[str, bool]:
         python = make_environment(ROOT / ".environments" / version, version)
     except SetUpError as error:
         return f"Blender {version}: {error}", False
-    tests, tests_passed = _run(python, "-m", "pytest", "-q", "--numprocesses", "auto", *TESTS)
+    tests, tests_passed = _run(python, "-m", "pytest", "-q", "--numprocesses", "auto", "-m", "not long", *TESTS)
     package, package_works = _run(python, "tools/try_package.py", _archive())
     told = f"Blender {version} (Python {BLENDERS[version][0]}): {tests}; from the zip: {package}"
     return f"{told} [{time.monotonic() - start:.0f} s in all]", tests_passed and package_works
