@@ -1,4 +1,4 @@
-"""What the panels of the sidebar tab have in common."""
+"""The sidebar tab: the base of its panels, and rows and texts that several of them draw."""
 
 import bpy
 from bpy.app.translations import pgettext_iface as translated

@@ -59,7 +59,7 @@ class MeshSettings(Protocol):
 
 
 class JobStatus(Protocol):
-    """How far the running job is, and the last problem."""
+    """The progress of the running job, and the last problem."""
 
     is_running: bool
     job: str

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TypedDict
 
 import bpy
 import numpy as np
@@ -13,16 +14,25 @@ from compute import Analysis, Matching, TriangleMesh, analyze
 from compute.registration.eigenfunctions.matching import matching_shape
 from compute.registration.parts.population import label_matched, match_divisible, with_parts
 from compute.registration.parts.transferred_labels import Divisible, divisible
-from compute.surface.mesh import Ints
+from compute.surface.mesh import Floats, Ints32
 from examples import Character, hand, humanoid, octopus, quadruped
 from tools.pictures.characters import FINGERS_UP, add_mesh, paint_faces
 from tools.pictures.lettering import sheet
 from tools.pictures.shots import light_on, shot_in_light
-from tools.render import View
+from tools.render import Pixels, View
 
 CELL = (260, 280)
+
+
+class Level(TypedDict, total=False):
+    """The choice of a level, by its number or by persistence."""
+
+    level: int
+    threshold: float
+
+
 # Names of the rows and how the level of the reference is chosen.
-LEVELS: dict[str, dict[str, float]] = {"Few": {"level": 2}, "Default": {}, "Fine": {"threshold": 1e-3}}
+LEVELS: dict[str, Level] = {"Few": {"level": 2}, "Default": {}, "Fine": {"threshold": 1e-3}}
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +55,7 @@ class Subject:
     poses: dict[str, int]
     azimuth: float
     elevation: float
-    upright: np.ndarray
+    upright: Floats
 
     @property
     def view(self) -> View:
@@ -117,11 +127,11 @@ def _row(name: str, level: str) -> list[Image.Image]:
 
 
 @cache
-def _light(name: str, pose: str) -> np.ndarray:
+def _light(name: str, pose: str) -> Pixels:
     return light_on([added(SUBJECTS[name].mesh(pose))], SUBJECTS[name].view)
 
 
-def _labels(name: str, level: str) -> list[Ints]:
+def _labels(name: str, level: str) -> list[Ints32]:
     """Return the part of each triangle of each pose."""
     family = _family(name)
     own = family.reference.segment(mode="nested", **LEVELS[level])
