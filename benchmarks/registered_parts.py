@@ -15,8 +15,8 @@ import numpy as np
 
 from benchmarks.posed_families import FAMILIES, closest_points, load_family
 from benchmarks.registration_truth import Copy, make_copy
-from compute.registration.parts.carried_labels import divisible
 from compute.registration.parts.population import Reference, label_matched, match_divisible, prepare_reference
+from compute.registration.parts.transferred_labels import divisible
 
 KINDS = ("remeshed", "decimated")
 

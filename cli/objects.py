@@ -54,7 +54,7 @@ def row_of(obj: bpy.types.Object, labels: BranchLabels, outcome: Outcome, warnin
     return {
         "name": obj.name,
         "level": labels.level,
-        "n_levels": outcome.stored.hierarchy.n_levels,
+        "n_levels": outcome.stored.part_tree.hierarchy.n_levels,
         "parts": part_rows(obj.data, labels),
         "seconds": round(outcome.seconds, 3),
         "warnings": [*outcome.warnings, *warnings, *labels.warnings],

@@ -115,7 +115,7 @@ class Register:
         settings = {**analysis_settings(self._options), "use_modifiers": False}
         match = match_of(found, reference.name, self._wish, settings)
         registration_record.remember(mesh, reference.tables, match, reference_object)
-        part_writer.show_labels(mesh, found.labels, outcome.stored.branches, reference.mode)
+        part_writer.show_labels(mesh, found.labels, outcome.stored.part_tree, reference.mode)
         return self._row(obj, found, warnings)
 
     def _row(self, obj: bpy.types.Object, found: Found, warnings: tuple[str, ...]) -> Report:

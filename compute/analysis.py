@@ -27,17 +27,18 @@ from .segmentation.borders.level_set_borders import (
     trace_borders,
 )
 from .segmentation.faces.arc_areas import arc_areas
-from .segmentation.faces.branches import Branches, build_branches
+from .segmentation.faces.branches import build_branches
 from .segmentation.faces.face_graph import face_graph
-from .segmentation.faces.level_cuts import cut_arcs
+from .segmentation.faces.part_tree import PartTree
+from .segmentation.hierarchy.arc_measures import ArcMeasures, measure_arcs
 from .segmentation.hierarchy.levels import Hierarchy, build_hierarchy
-from .segmentation.hierarchy.necks import measured
 from .segmentation.hierarchy.shell_bodies import with_bodies
+from .segmentation.modes import NESTED
 from .segmentation.parts.part_labels import Segmentation, label_branches
 from .segmentation.parts.subparts import inserted
 from .segmentation.parts.zero_level import divide_at_zero
 from .surface.cleaning import Surface, analyzed_surface, clean_surface
-from .surface.mesh import Floats, Ints, TriangleMesh
+from .surface.mesh import Ints, TriangleMesh
 
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.
@@ -62,6 +63,8 @@ class Analysis:
         What of it was analyzed.
     field : ScalarField
     hierarchy : Hierarchy
+    measures : tuple of ArcMeasures
+        One for each tree of the hierarchy.
     warnings : tuple of str
         Sentences for the user.
     field_choice : "diffusion", int or (V,) array
@@ -72,6 +75,7 @@ class Analysis:
     surface: Surface
     field: ScalarField
     hierarchy: Hierarchy
+    measures: tuple[ArcMeasures, ...]
     warnings: tuple[str, ...]
     field_choice: str | int | ArrayLike
     _topology: FieldTopology
@@ -144,11 +148,11 @@ class Analysis:
 
     @cached_property
     def _ended_at_handles(self) -> "Analysis":
-        hierarchy, arcs = _hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
-        return dataclasses.replace(self, hierarchy=hierarchy, _arc_of_vertex=arcs)
+        hierarchy, arcs, measures = _hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
+        return dataclasses.replace(self, hierarchy=hierarchy, measures=measures, _arc_of_vertex=arcs)
 
-    def branches(self, face_of_triangle: Ints | None = None) -> tuple[Branches, ...]:
-        """Return the faces of every arc, one table for each tree of the hierarchy.
+    def part_tree(self, face_of_triangle: Ints | None = None) -> PartTree:
+        """Return the hierarchy with the faces of its arcs: all that the parts of any level are read from.
 
         Parameters
         ----------
@@ -156,38 +160,35 @@ class Analysis:
             The polygon each triangle of the input belongs to; the triangles themselves if None.
         """
         if face_of_triangle is None:
-            return self._triangle_branches
-        return self._branches_of(np.asarray(face_of_triangle, dtype=np.int64))
+            return self._triangle_tree
+        return self._part_tree(np.asarray(face_of_triangle, dtype=np.int64))
 
     @cached_property
-    def _triangle_branches(self) -> tuple[Branches, ...]:
-        return self._branches_of(np.arange(len(self.mesh.triangles)))
+    def _triangle_tree(self) -> PartTree:
+        return self._part_tree(np.arange(len(self.mesh.triangles)))
 
-    def _branches_of(self, face_of_triangle: Ints) -> tuple[Branches, ...]:
+    def _part_tree(self, face_of_triangle: Ints) -> PartTree:
         graph = face_graph(self.mesh, self.surface, face_of_triangle)
         face = face_of_triangle[self.surface.input_triangle][self.net.triangle_of_surface]
-        shares = []
-        for tree, arc in zip(self.hierarchy.trees, self._arc_of_vertex, strict=True):
+        trees, shares = self.hierarchy.trees, []
+        for tree, arc in zip(trees, self._arc_of_vertex, strict=True):
             rising = -self.field.values if tree.is_of_maxima else self.field.values
             shares.append(arc_areas(rising, arc, tree, self.net, face))
-        return build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
+        heights = tuple(closing_heights(self.field.values, tree) for tree in trees)
+        branches = build_branches([tree.parent for tree in trees], shares, graph)
+        return PartTree(self.hierarchy, self.measures, heights, branches)
 
     def profile(self, edges: Ints | None = None) -> EdgeProfile:
         """Return the field along edges (E, 2) of the input, those of its triangles if None."""
         edges = self.mesh.edges.vertices if edges is None else edges
         return edge_profile(self.surface, self.field, self._arc_of_vertex, edges)
 
-    @cached_property
-    def closing_heights(self) -> tuple[Floats, ...]:
-        """(A,) for each tree, the value of the field at which each arc closes; not a number for the root."""
-        return tuple(closing_heights(self.field.values, tree) for tree in self.hierarchy.trees)
-
-    def borders(self, level: int | None = None, mode: str = "features") -> tuple[Polyline, ...]:
+    def borders(self, level: int | None = None, mode: str = NESTED) -> tuple[Polyline, ...]:
         """Return the lines where the parts of a level, the default one if None, end on the triangles of the input."""
-        hierarchy, branches = self.hierarchy, self.branches()
+        hierarchy, part_tree = self.hierarchy, self.part_tree()
         level = hierarchy.default_level if level is None else hierarchy.checked_level(level)
-        cuts = cut_arcs(hierarchy, branches, level, mode)
-        crossings = cross_edges(self.profile(), hierarchy.trees, self.closing_heights, cuts)
+        cuts = part_tree.cut_arcs(level, mode)
+        crossings = cross_edges(self.profile(), part_tree.trees, part_tree.closing_heights, cuts)
         return trace_borders(self.mesh, crossings, part_of_border(cuts))
 
     def segment(
@@ -196,7 +197,7 @@ class Analysis:
         level: int | None = None,
         threshold: float | None = None,
         n_parts: int | None = None,
-        mode: str = "features",
+        mode: str = NESTED,
         essential: bool = False,
         within: int | None = None,
     ) -> Segmentation:
@@ -210,8 +211,8 @@ class Analysis:
             Least persistence of a feature, as a fraction of the field's range.
         n_parts : int, optional
             How many labels, the body included.
-        mode : "features" or "nested"
-            Only the features, or also what lies between them when all levels up to this one are overlaid.
+        mode : "nested" or "features"
+            The features and what lies between them when all levels up to this one are overlaid, or the features alone.
         essential : bool
             Whether parts end at essential saddles, too: where a handle begins, such as a leg that a tail touches.
         within : int, optional
@@ -235,11 +236,15 @@ class Analysis:
             return self._ended_at_handles.segment(
                 level=level, threshold=threshold, n_parts=n_parts, mode=mode, within=within
             )
-        branches = self.branches()
-        labels = label_branches(self.hierarchy, branches, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
-        of_faces = labels.of_faces(branches)
-        trace = partial(self.borders, labels.level, mode)
-        whole = Segmentation(of_faces, labels.parts, labels.level, labels.warnings, trace)
+        part_tree = self.part_tree()
+        labels = label_branches(part_tree, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
+        whole = Segmentation(
+            labels=labels.of_faces(part_tree),
+            parts=labels.parts,
+            level=labels.level,
+            warnings=labels.warnings,
+            _trace=partial(self.borders, labels.level, mode),
+        )
         return whole if within is None else _divided_further(self, whole, within, mode)
 
 
@@ -286,27 +291,36 @@ def analyze(
     net = chosen.field.net
     topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
     progress(0.9, "Ordering the features")
-    hierarchy, arcs = _hierarchy(surface, chosen.field, topology, ends_at_handles=False)
+    hierarchy, arcs, measures = _hierarchy(surface, chosen.field, topology, ends_at_handles=False)
     progress(1.0, "Done")
-    warnings = (*_warnings_of(surface, hierarchy), *chosen.warnings)
-    return Analysis(mesh, surface, chosen.field, hierarchy, warnings, field, topology, arcs, chosen.basis)
+    return Analysis(
+        mesh=mesh,
+        surface=surface,
+        field=chosen.field,
+        hierarchy=hierarchy,
+        measures=measures,
+        warnings=(*_warnings_of(surface, hierarchy), *chosen.warnings),
+        field_choice=field,
+        _topology=topology,
+        _arc_of_vertex=arcs,
+        _known_basis=chosen.basis,
+    )
 
 
 def _hierarchy(
     surface: Surface, scalar_field: ScalarField, topology: FieldTopology, *, ends_at_handles: bool
-) -> tuple[Hierarchy, tuple[Ints, ...]]:
-    """Return the hierarchy with its necks measured, and the arcs of the net's vertices."""
-    bare, arcs = build_hierarchy(
+) -> tuple[Hierarchy, tuple[Ints, ...], tuple[ArcMeasures, ...]]:
+    """Return the hierarchy, and for each of its trees the arcs of the net's vertices and the measures of the arcs."""
+    hierarchy, arcs = build_hierarchy(
         topology,
         minima_are_features=scalar_field.minima_are_features,
         least_range=scalar_field.least_range,
         ends_at_handles=ends_at_handles,
     )
-    trees = tuple(measured(tree, arc, scalar_field) for tree, arc in zip(bare.trees, arcs, strict=True))
-    hierarchy = dataclasses.replace(bare, trees=trees)
     if surface.is_apart:
         hierarchy = with_bodies(hierarchy, _shell_of_vertex(surface, scalar_field.net))
-    return hierarchy, arcs
+    measures = (measure_arcs(tree, arc, scalar_field) for tree, arc in zip(hierarchy.trees, arcs, strict=True))
+    return hierarchy, arcs, tuple(measures)
 
 
 def _shell_of_vertex(surface: Surface, net: Net) -> Ints:
@@ -379,7 +393,7 @@ def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis
     return analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
 
 
-def segment_part(own: Analysis, mode: str = "features") -> Segmentation:
+def segment_part(own: Analysis, mode: str = NESTED) -> Segmentation:
     """Divide a part that was analyzed on its own at the level that is usual for parts."""
     holds_border = own.field.name == DIFFUSION and own.eigenbasis.boundary == "dirichlet"
     return own.segment(threshold=WITHIN_THRESHOLD / own.field.value_range if holds_border else None, mode=mode)

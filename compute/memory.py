@@ -1,4 +1,4 @@
-"""How much memory there is, for telling before the work starts that it will not fit."""
+"""Memory at hand, so that work which will not fit is refused before it starts."""
 
 import ctypes
 import os
@@ -9,7 +9,7 @@ MEMINFO = Path("/proc/meminfo")
 
 
 class _MemoryStatus(ctypes.Structure):
-    """What Windows tells of its memory (MEMORYSTATUSEX)."""
+    """The structure in which Windows reports its memory (MEMORYSTATUSEX)."""
 
     _fields_ = (
         ("length", ctypes.c_uint32),
@@ -30,9 +30,9 @@ class _MemoryStatus(ctypes.Structure):
 
 
 def available_memory() -> float:
-    """Return the bytes that can be had without swapping; where the system tells only what it has, all of it.
+    """Return the bytes that can be had without swapping; all there are where the system reports only those.
 
-    Infinite where it tells nothing.
+    Infinite where it reports nothing.
     """
     if sys.platform == "win32":
         status = _MemoryStatus(length=ctypes.sizeof(_MemoryStatus))

@@ -1,4 +1,4 @@
-"""How long work tells where it is, and how it is stopped.
+"""Progress of long work, and its end where the user wants none of it any more.
 
 A progress callback is any ``progress(fraction, text)``. Stages call it often, the fraction never falls, and the
 callback may raise :class:`~compute.errors.Cancelled`, which stages let through untouched.
@@ -10,7 +10,7 @@ Progress = Callable[[float, str], None]
 
 
 def silent(fraction: float, text: str) -> None:
-    """Tell nobody."""
+    """Report to nobody."""
 
 
 def section(progress: Progress, start: float, stop: float) -> Progress:
@@ -23,12 +23,12 @@ def section(progress: Progress, start: float, stop: float) -> Progress:
 
 
 def naming(progress: Progress, name: str) -> Progress:
-    """Return a callback that tells of which object it speaks."""
+    """Return a callback whose texts begin with the name of an object."""
     return lambda fraction, text: progress(fraction, f"{name}: {text}")
 
 
 def rising(progress: Progress) -> Progress:
-    """Return a callback that tells the highest fraction so far: an iteration's own estimate may fall back."""
+    """Return a callback that reports the highest fraction so far: an iteration's own estimate may fall back."""
     highest = 0.0
 
     def report(fraction: float, text: str) -> None:

@@ -3,8 +3,10 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ..operators.blender.known_values import present
+from ..operators.blender.registered_settings import analysis_settings
 from ..operators.mesh_state import function_hints
-from .tab import EigenpartsPanel
+from .tab import EigenpartsPanel, active_mesh
 
 
 class EIGENPARTS_PT_function_hints(EigenpartsPanel, bpy.types.Panel):
@@ -13,17 +15,18 @@ class EIGENPARTS_PT_function_hints(EigenpartsPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        is_asked = context.scene.eigenparts.field == "EIGENFUNCTION"
-        obj = context.object
-        return is_asked and obj is not None and obj.type == "MESH" and bool(function_hints.read(obj.data))
+        mesh = active_mesh(context)
+        is_asked = analysis_settings(context).field == "EIGENFUNCTION"
+        return is_asked and mesh is not None and bool(function_hints.read(mesh))
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
-        for number, n_held, n_protrusions in function_hints.read(context.object.data)[: function_hints.MOST_SHOWN]:
+        hints = function_hints.read(present(active_mesh(context)))
+        for number, n_held, n_protrusions in hints[: function_hints.MOST_SHOWN]:
             text = translated("{number}: {held} of {all} protrusions").format(
                 number=number, held=n_held, all=n_protrusions
             )
-            choose = column.operator("wm.context_set_int", text=text, translate=False)
+            choose = present(column.operator("wm.context_set_int", text=text, translate=False))
             choose.data_path, choose.value = "scene.eigenparts.eigenfunction", number
 
 

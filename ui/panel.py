@@ -3,8 +3,17 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ..operators.blender.known_values import present
+from ..operators.blender.registered_settings import (
+    AnalysisSettings,
+    MeshSettings,
+    analysis_settings,
+    job_status,
+    mesh_settings,
+)
 from ..operators.mesh_state import registration_record, state
 from ..operators.messages import unexpected_errors
+from ..operators.messages.user_errors import Refusal
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
 from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_hint, draw_sentence, main_row
 
@@ -19,19 +28,19 @@ class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        status = context.window_manager.eigenparts
+        status = job_status(context)
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
         column.enabled = not status.is_running
-        _draw_field(column, context.scene.eigenparts, active_mesh(context))
+        _draw_field(column, analysis_settings(context), active_mesh(context))
         row = main_row(self, context)
         if row is not None:
             row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
             row.operator("eigenparts.clear", text="", icon="TRASH")
         fault = unexpected_errors.last()
         if fault is not None:
-            draw_sentence(layout, fault.sentence, context.region.width)
+            draw_sentence(layout, fault.sentence, present(context.region).width)
             layout.operator("eigenparts.copy_report", icon="COPYDOWN")
 
 
@@ -47,8 +56,8 @@ class EIGENPARTS_PT_options(EigenpartsPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.enabled = not context.window_manager.eigenparts.is_running
-        settings = context.scene.eigenparts
+        layout.enabled = not job_status(context).is_running
+        settings = analysis_settings(context)
         layout.prop(settings, "order")
         layout.prop(settings, "boundary")
         layout.prop(settings, "shells")
@@ -62,7 +71,7 @@ class EIGENPARTS_PT_level(EigenpartsPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout, mesh = self.layout, active_mesh(context)
         if mesh is not None and not state.is_analyzed(mesh):
-            draw_hint(layout, FIRST_STEP, context.region.width)
+            draw_hint(layout, FIRST_STEP, present(context.region).width)
         else:
             layout.label(text=_told(mesh), translate=False)
         if mesh is not None:
@@ -79,11 +88,12 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
         if mesh is None:
             self.layout.label(text=_told(mesh), translate=False)
             return
-        rows = {"rows": N_ROWS, "maxrows": N_ROWS}
-        settings = mesh.eigenparts
+        settings = mesh_settings(mesh)
         row = self.layout.row()
-        row.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", **rows)
-        is_picking = context.window_manager.eigenparts.is_picking
+        row.template_list(
+            *("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row"), rows=N_ROWS, maxrows=N_ROWS
+        )
+        is_picking = job_status(context).is_picking
         row.operator("eigenparts.pick_part", text="", icon="EYEDROPPER", depress=is_picking)
 
 
@@ -100,15 +110,15 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
             return
         column = self.layout.column()
         column.enabled = state.is_analyzed(mesh)
-        _draw_outputs(column, mesh.eigenparts)
+        _draw_outputs(column, mesh_settings(mesh))
         column = self.layout.column(align=True)
         cuts = column.row(align=True)
-        cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN").method = "INSERT"
-        cuts.operator("eigenparts.cut", text="Use Edges").method = "EXISTING"
+        present(cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN")).method = "INSERT"
+        present(cuts.operator("eigenparts.cut", text="Use Edges")).method = "EXISTING"
         column.operator("eigenparts.separate", icon="MOD_EXPLODE")
 
 
-def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, mesh: bpy.types.Mesh | None) -> None:
+def _draw_field(layout: bpy.types.UILayout, settings: AnalysisSettings, mesh: bpy.types.Mesh | None) -> None:
     layout.prop(settings, "field")
     if settings.field == "EIGENFUNCTION":
         layout.prop(settings, "eigenfunction")
@@ -120,20 +130,21 @@ def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, m
 
 def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
     layout.enabled = state.is_analyzed(mesh)
-    layout.row().prop(mesh.eigenparts, "mode", expand=True)
+    settings = mesh_settings(mesh)
+    layout.row().prop(settings, "mode", expand=True)
     column = layout.column(align=True)
-    column.prop(mesh.eigenparts, "level")
-    column.prop(mesh.eigenparts, "n_parts")
+    column.prop(settings, "level")
+    column.prop(settings, "n_parts")
     column.operator("eigenparts.segment", text="Default Level", icon="LOOP_BACK")
 
 
 def _draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, mesh: bpy.types.Mesh) -> None:
     """Say what is wrong with what the mesh remembers, and what the last change met."""
-    status = context.window_manager.eigenparts
+    status = job_status(context)
     if state.is_analyzed(mesh) and _summary(mesh) is None:
-        draw_sentence(layout, state.DAMAGED, context.region.width)
+        draw_sentence(layout, state.DAMAGED, present(context.region).width)
     if status.problem and status.problem_of == mesh.name_full:
-        draw_sentence(layout, status.problem, context.region.width)
+        draw_sentence(layout, status.problem, present(context.region).width)
 
 
 def _told(mesh: bpy.types.Mesh | None) -> str:
@@ -153,11 +164,11 @@ def _told(mesh: bpy.types.Mesh | None) -> str:
 def _summary(mesh: bpy.types.Mesh) -> state.Summary | None:
     try:
         return state.summarize(mesh)
-    except state.Refusal:
+    except Refusal:
         return None
 
 
-def _draw_outputs(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def _draw_outputs(column: bpy.types.UILayout, settings: MeshSettings) -> None:
     for name in ("vertex_attribute", "corner_colors", "face_sets", "vertex_groups"):
         column.prop(settings, name)
     softness = column.row()

@@ -67,7 +67,7 @@ def smallest_eigenpairs(
     pencil : Pencil
         Stiffness semidefinite, mass definite, N rows; the shift below every eigenvalue.
     start : (N, b) float
-        Where to start; no eigenvalue may be more than b-fold.
+        First block; no eigenvalue may be more than b-fold.
     n_pairs : int
     tolerance : float
         Largest length of a residual in the norm of the inverse, over the square root of the eigenvalue.
@@ -82,19 +82,19 @@ def smallest_eigenpairs(
     n_rows, width = start.shape
     capacity = MOST_COLUMNS * n_pairs + MOST_BLOCKS * width
     krylov = _Krylov(np.empty((capacity, n_rows)), np.zeros((capacity, capacity)))
-    block, massive, _ = _orthonormal(start.T, pencil.mass)
+    block, weighted, _ = _orthonormal(start.T, pencil.mass)
     promised, looks, look_at = PROMISED * tolerance, [], FIRST_LOOK * n_pairs
     while krylov.size + 2 * width <= capacity:
-        block, massive, coupling = _extend(krylov, block, massive, pencil)
+        block, weighted, coupling = _extend(krylov, block, weighted, pencil)
         progress(min(krylov.size / (MOST_COLUMNS * n_pairs), 1.0), "Computing eigenfunctions")
         if krylov.size < look_at:
             continue
         inverse_values, coefficients = _ritz(krylov, n_pairs)
-        worst = _promise(inverse_values, coefficients, coupling)
+        worst = _promised_residual(inverse_values, coefficients, coupling)
         if worst <= promised:
             values = pencil.shift + 1 / inverse_values
             functions = krylov.rows[: krylov.size].T @ coefficients
-            if _error(pencil, values, functions) <= tolerance:
+            if _true_residual(pencil, values, functions) <= tolerance:
                 return values, functions
             promised /= 3
         looks.append((krylov.size, float(np.log(worst))))
@@ -102,34 +102,34 @@ def smallest_eigenpairs(
     raise SpectrumError("The eigenfunctions did not converge; look for slivers, or remesh the surface.")
 
 
-def _extend(krylov: _Krylov, block: Floats, massive: Floats, pencil: Pencil) -> tuple[Floats, Floats, Floats]:
+def _extend(krylov: _Krylov, block: Floats, weighted: Floats, pencil: Pencil) -> tuple[Floats, Floats, Floats]:
     """Add a block to the basis, and return the next one, its product with the mass, and its coupling to this one."""
     width, first = len(block), krylov.size
-    own = slice(first, first + width)
+    present = slice(first, first + width)
     before = slice(max(first - width, 0), first)
-    krylov.rows[own] = block
+    krylov.rows[present] = block
     krylov.size = first + width
-    image = np.ascontiguousarray(pencil.solve(massive.T).T)
-    diagonal = massive @ image.T
-    krylov.projected[own, own] = 0.5 * (diagonal + diagonal.T)
+    image = np.ascontiguousarray(pencil.solve(weighted.T).T)
+    diagonal = weighted @ image.T
+    krylov.projected[present, present] = 0.5 * (diagonal + diagonal.T)
     image -= diagonal.T @ block
-    image -= krylov.projected[own, before] @ krylov.rows[before]
+    image -= krylov.projected[present, before] @ krylov.rows[before]
     # In exact arithmetic nothing is left along the rest of the basis; without this step round-off would bring back
     # copies of functions that have already converged.
     known = krylov.rows[: krylov.size]
     image -= (known @ (pencil.mass @ image.T)).T @ known
-    following, massive, coupling = _orthonormal(image, pencil.mass)
+    following, weighted, coupling = _orthonormal(image, pencil.mass)
     after = slice(krylov.size, krylov.size + width)
-    krylov.projected[after, own], krylov.projected[own, after] = coupling, coupling.T
-    return following, massive, coupling
+    krylov.projected[after, present], krylov.projected[present, after] = coupling, coupling.T
+    return following, weighted, coupling
 
 
 def _orthonormal(rows: Floats, mass: csr_array) -> tuple[Floats, Floats, Floats]:
     """Return orthonormal rows with the same span, their products with the mass, and the coefficients back."""
-    massive = (mass @ np.ascontiguousarray(rows.T)).T
-    coefficients = scipy.linalg.cholesky(rows @ massive.T, lower=True)
+    weighted = (mass @ np.ascontiguousarray(rows.T)).T
+    coefficients = scipy.linalg.cholesky(rows @ weighted.T, lower=True)
     inverse = scipy.linalg.solve_triangular(coefficients, np.eye(len(rows)), lower=True)
-    return inverse @ rows, inverse @ massive, coefficients.T
+    return inverse @ rows, inverse @ weighted, coefficients.T
 
 
 def _ritz(krylov: _Krylov, n_pairs: int) -> tuple[Floats, Floats]:
@@ -140,7 +140,7 @@ def _ritz(krylov: _Krylov, n_pairs: int) -> tuple[Floats, Floats]:
     return values[::-1], vectors[:, ::-1]
 
 
-def _promise(inverse_values: Floats, coefficients: Floats, coupling: Floats) -> float:
+def _promised_residual(inverse_values: Floats, coefficients: Floats, coupling: Floats) -> float:
     """Return the largest relative residual of the inverse that the recurrence promises."""
     width = len(coupling)
     residuals = np.linalg.norm(coupling @ coefficients[-width:], axis=0)
@@ -167,7 +167,7 @@ def _next_look(looks: list[tuple[int, float]], goal: float) -> int:
     return int(size + growth)
 
 
-def _error(pencil: Pencil, values: Floats, functions: Floats) -> float:
+def _true_residual(pencil: Pencil, values: Floats, functions: Floats) -> float:
     """Return the length of the true residuals in the norm of the inverse, over the root of the values.
 
     It is measured on a few mixtures with random signs, whose squared lengths are on average the sum over all functions.

@@ -1,4 +1,4 @@
-"""One fixed choice of eigenfunctions where the eigenvalue alone leaves it open: signs, and bases of eigenspaces."""
+"""A fixed choice of eigenfunctions where the eigenvalue alone leaves it open: signs, and bases of eigenspaces."""
 
 import numpy as np
 from scipy.sparse import csr_array

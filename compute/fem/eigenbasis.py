@@ -1,4 +1,4 @@
-"""Eigenfunctions of the Laplace-Beltrami operator: the solver."""
+"""Eigenfunctions of the Laplace-Beltrami operator."""
 
 from dataclasses import dataclass
 
@@ -42,7 +42,18 @@ class Eigenbasis:
     boundary : str
         "neumann" or "dirichlet".
     surface : Surface
-        What was analyzed, with the way back to the input's triangles.
+        The surface that was analyzed, with its place in the input.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from compute import TriangleMesh, solve_eigenbasis
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> basis = solve_eigenbasis(square, 3)
+    >>> basis.functions.shape
+    (16, 3)
+    >>> np.allclose(basis.functions.T @ basis.mass @ basis.functions, np.eye(3))
+    True
     """
 
     values: Floats
@@ -71,7 +82,7 @@ def solve_eigenbasis(
     mesh : TriangleMesh
         Any mesh.
     n_functions : int
-        How many functions, the constant not counted.
+        Number of functions, the constant not counted.
     order : int
         Degree of the elements, 1, 2 or 3.
     boundary : str
@@ -79,7 +90,12 @@ def solve_eigenbasis(
     component : int, optional
         Which component, by falling area; the largest if None.
     progress : Progress, optional
-        Told where the work is; may raise `Cancelled`.
+        ``progress(fraction, text)``; may raise `Cancelled`.
+
+    Returns
+    -------
+    Eigenbasis
+        With eigenvalues in 1/length².
 
     Raises
     ------
@@ -87,6 +103,21 @@ def solve_eigenbasis(
         If the component does not exist or is a single triangle.
     SpectrumError
         If the order, the boundary condition or the number of functions is not possible, or nothing converges.
+
+    References
+    ----------
+    .. [1] Reuter, IJCV 2010, section 4.1.
+    .. [2] Reuter, Wolter, Peinecke, "Laplace-Beltrami Spectra as Shape-DNA of Surfaces and Solids", CAD 2006.
+
+    Examples
+    --------
+    The unit square has the eigenvalues pi² (m² + n²).
+
+    >>> import numpy as np
+    >>> from compute import TriangleMesh, solve_eigenbasis
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> np.round(solve_eigenbasis(square, 2).values / np.pi**2, 2).tolist()
+    [1.0, 1.0]
     """
     surface = clean_surface(mesh, component)
     return solve_on_surface(surface, n_functions, order=order, boundary=boundary, progress=progress)
@@ -127,12 +158,19 @@ def solve_on_surface(
     functions[:n_vertices] = functions[surface.vertex_of_input]
     functions /= np.sqrt(area)
     return Eigenbasis(
-        values[kept] / area, functions, mass * area, space.nodes, space.elements, order, boundary, surface
+        values=values[kept] / area,
+        functions=functions,
+        mass=mass * area,
+        nodes=space.nodes,
+        elements=space.elements,
+        order=order,
+        boundary=boundary,
+        surface=surface,
     )
 
 
 def _free_unknowns(space: FunctionSpace, boundary: str) -> Bools:
-    """Return (N,) which unknowns are solved for."""
+    """Return (N,) the mask of the unknowns that are solved for."""
     if boundary not in BOUNDARIES:
         raise SpectrumError(f'The boundary condition is "neumann" or "dirichlet", not "{boundary}".')
     if boundary == "neumann":

@@ -50,7 +50,7 @@ class EigenProblem:
     space : FunctionSpace
         N unknowns.
     is_free : (N,) bool
-        Which unknowns are solved for; the functions are zero at the others.
+        Whether an unknown is solved for; the functions are zero at the others.
     metric : Metric
         Shape of the triangles.
     leaves : (T,) int, optional
@@ -109,7 +109,7 @@ def lowest_eigenpairs(
     ----------
     problem : EigenProblem
     n_pairs : int
-        How many pairs, the constant counted.
+        Number of pairs, the constant counted.
     n_constant : int
         1 if the constant is among them, else 0.
     largest_ratio : float

@@ -94,8 +94,14 @@ def reference_element(order: int) -> ReferenceElement:
     along_xi, along_eta = _derivative(basis, axis=1), _derivative(basis, axis=2)
     mixed = _integrals(along_xi, along_eta)
     dirichlet = [_integrals(along_xi, along_xi), _integrals(along_eta, along_eta), mixed + mixed.T]
-    mass = _integrals(basis, basis).astype(float)
-    return ReferenceElement(order, lattice, basis, np.array(dirichlet, dtype=float), mass, _subdivision(lattice))
+    return ReferenceElement(
+        order=order,
+        lattice=lattice,
+        coefficients=basis,
+        dirichlet=np.array(dirichlet, dtype=float),
+        mass=_integrals(basis, basis).astype(float),
+        subdivision=_subdivision(lattice),
+    )
 
 
 def _lattice(order: int) -> Ints:

@@ -108,7 +108,7 @@ def _large(parts: _Parts) -> _Parts:
 
 
 def _cut(parts: _Parts, centres: Floats) -> Bools:
-    """Return (m,) which triangles lie beyond the best straight cut through their part."""
+    """Return (m,) the mask of the triangles beyond the best straight cut through their part."""
     fewest = np.full(len(parts.sizes), np.inf)
     is_upper = np.zeros(len(centres), dtype=bool)
     centres = centres - (np.add.reduceat(centres, parts.starts) / parts.sizes[:, None])[parts.part]

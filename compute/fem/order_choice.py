@@ -1,4 +1,4 @@
-"""Which order of elements a mesh can afford."""
+"""Choice of the order of elements that a mesh can afford."""
 
 from dataclasses import dataclass
 

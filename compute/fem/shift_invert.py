@@ -1,4 +1,4 @@
-"""The plain ways to the lowest eigenpairs: full matrices if they are small, else one sparse factor and ARPACK.
+"""The lowest eigenpairs by full matrices if they are small, else by one sparse factor and ARPACK.
 
 For linear elements and small problems; `compute.fem.block_lanczos` is faster for large ones of higher order.
 """

@@ -1,4 +1,4 @@
-"""Finite element spaces on a triangle mesh: which unknown sits where."""
+"""Finite element spaces on a triangle mesh: the unknowns of each triangle."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -65,6 +65,12 @@ class FunctionSpace:
 
 def function_space(mesh: TriangleMesh, order: int) -> FunctionSpace:
     """Return the continuous functions on a mesh that are polynomials of an order on each triangle.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    order : int
+        1, 2 or 3.
 
     Raises
     ------

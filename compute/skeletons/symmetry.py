@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from ..analysis import Analysis
 from ..progress import Progress, silent
-from ..registration.dense.matched_points import source_points
+from ..registration.dense.point_map import point_map
 from ..registration.eigenfunctions.matching import match
 from ..registration.eigenfunctions.spectral_shape import spectral_shape
 from ..surface.mesh import Floats, Ints
@@ -98,7 +98,7 @@ def _matched(analysis: Analysis) -> tuple[Ints, Ints, Ints] | None:
     matching = match(analysis, analysis, mirrored=True)
     if matching.confidence < SURE:
         return None
-    landing = source_points(shape.mirrored(), shape, matching)
+    landing = point_map(shape.mirrored(), shape, matching)
     return landing, shape.triangles, shape.input_triangle
 
 

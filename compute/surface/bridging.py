@@ -24,12 +24,12 @@ LYING = 0.04
 
 @dataclass(frozen=True, eq=False)
 class Bridges:
-    """Which shells are analyzed together, and the triangles that hold them together.
+    """Shells that are analyzed together, and the triangles that hold them together.
 
     Attributes
     ----------
     is_joined : (S,) bool
-        The largest shell, and those that prolong it.
+        Whether a shell is the largest or prolongs it.
     triangles : (n, 3) int64
         One corner on one shell, two on another.
     pier : (n,) int64
@@ -74,7 +74,7 @@ def bridge_shells(mesh: TriangleMesh) -> Bridges:
 
 
 def large_shells(mesh: TriangleMesh) -> Bools:
-    """Tell which shells (S,) are no details; the largest never is one."""
+    """Return (S,) the mask of the shells that are no details; the largest never is one."""
     area = np.bincount(mesh.component_of_triangle, mesh.areas)
     return (area >= LEAST_SHARE * area.sum()) | (np.arange(len(area)) == 0)
 

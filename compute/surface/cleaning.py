@@ -1,4 +1,4 @@
-"""The part of a mesh that is analyzed: one clean component, and the way back to every triangle of the input."""
+"""The part of a mesh that is analyzed, clean, with the analyzed triangle for every triangle of the input."""
 
 from dataclasses import dataclass, replace
 
@@ -17,7 +17,7 @@ SHORTEST_EDGE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """What is analyzed of an input mesh: a surface, welded and without collapsed or repeated triangles.
+    """The part of an input mesh that is analyzed, welded and without collapsed or repeated triangles.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Surface:
     n_components : int
         Components of the input after welding.
     n_joined : int
-        How many of them are analyzed.
+        Number of those that are analyzed.
     is_apart : bool
         Whether these are analyzed each by itself; otherwise the surface is connected.
     """
@@ -59,7 +59,7 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
     mesh : TriangleMesh
         Any mesh.
     component : int, optional
-        Which component after welding, by falling area; the largest if None.
+        Number of the component after welding, by falling area; the largest if None.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
 def bridged_surface(mesh: TriangleMesh) -> Surface:
     """Return the largest component together with the shells that prolong it, in a state that can be analyzed.
 
-    Where shells nearly touch, triangles of our own hold them together; see `compute.shells`. The rest is as in
+    Where shells nearly touch, triangles of our own hold them together; see `bridge_shells`. The rest is as in
     `clean_surface`.
 
     Raises
@@ -147,7 +147,13 @@ def _surface_of(mesh: TriangleMesh, welded: _Welded, is_chosen: Bools) -> Surfac
     surface = TriangleMesh(mesh.vertices, welded.mesh.triangles[is_chosen])
     n_components = int(welded.mesh.component_of_triangle.max()) + 1
     nearest = _nearest_chosen(mesh, welded.twin, chosen)
-    return Surface(surface, welded.vertex_of_input, chosen, nearest, n_components)
+    return Surface(
+        mesh=surface,
+        vertex_of_input=welded.vertex_of_input,
+        input_triangle=chosen,
+        triangle_of_input=nearest,
+        n_components=n_components,
+    )
 
 
 def _checked(component: int | None, n_components: int) -> int:
@@ -205,12 +211,12 @@ def _nearest_chosen(mesh: TriangleMesh, twin: Ints, chosen: Ints) -> Ints:
     return nearest
 
 
-# What can be done with a mesh of several shells.
+# Treatments of a mesh of several shells.
 SHELLS = {"bridged": bridged_surface, "largest": clean_surface, "separate": separate_surface}
 
 
 def analyzed_surface(mesh: TriangleMesh, shells: str) -> Surface:
-    """Return what is analyzed of a mesh if its shells are "bridged", the "largest" is taken or all are "separate".
+    """Return the analyzed part of a mesh if its shells are "bridged", the "largest" is taken or all are "separate".
 
     Raises
     ------

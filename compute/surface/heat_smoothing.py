@@ -1,4 +1,4 @@
-"""Smoothing along the surface, by letting heat flow for a short time, and filling in what is not known."""
+"""Smoothing along the surface by a short flow of heat, and harmonic filling of unknown values."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +51,7 @@ def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
 
 
 def softened_labels(mesh: TriangleMesh, labels: NDArray[np.int32], width: float) -> tuple[Ints, Floats]:
-    """Return how much each vertex belongs to each label when the borders are softened.
+    """Return the share of each label at each vertex when the borders are softened.
 
     Parameters
     ----------
@@ -85,6 +85,10 @@ def harmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floats
     mesh : TriangleMesh
     values : (V, n) float64
     is_known : (V,) bool
+
+    Returns
+    -------
+    (V, n) float64
     """
     edges = mesh.edges.vertices
     n = len(mesh.vertices)

@@ -29,7 +29,7 @@ class Edges:
     of_triangle : (T, 3) int64
         Edge k of a triangle joins its corners k and k + 1.
     n_triangles : (E,) int64
-        How many triangles meet at each edge; 1 on the boundary, more than 2 where non-manifold.
+        Number of triangles that meet at each edge; 1 on the boundary, more than 2 where non-manifold.
     """
 
     vertices: Ints
@@ -65,6 +65,13 @@ class TriangleMesh:
     ------
     MeshError
         If there are no triangles, an index has no vertex, a used coordinate is not finite or the area is zero.
+
+    Examples
+    --------
+    >>> from compute import TriangleMesh
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> square.areas.tolist(), len(square.edges.vertices)
+    ([0.5, 0.5], 5)
     """
 
     vertices: Floats
@@ -125,7 +132,7 @@ def sorted_sides(triangles: Ints, n_vertices: int) -> tuple[Ints32, Ints32, Bool
     ends : (2, 3 T) int32
         Lower and higher end of the sides in that order.
     is_new : (3 T,) bool
-        Where an edge begins.
+        Whether a side is the first of its edge.
     """
     tails = triangles.astype(np.int32)
     heads = np.roll(tails, -1, axis=1)

@@ -13,9 +13,9 @@ LONGEST_OPENING = 1.0
 
 
 def wrongly_wound(mesh: TriangleMesh) -> Bools:
-    """(T,) the triangles to reverse, so that all are wound consistently and outward.
+    """Return (T,) the mask of the triangles to reverse, so that all are wound consistently and outward.
 
-    Patches are what hangs together through edges of exactly two triangles. A patch that is closed, or has small
+    Patches are triangles connected through edges of exactly two. A patch that is closed, or has small
     openings only, is turned so that its volume is positive; an open one so that the greater part of its area stays
     as it was. One-sided patches (a Möbius strip) stay as they are.
 
@@ -29,17 +29,17 @@ def wrongly_wound(mesh: TriangleMesh) -> Bools:
 
 
 def outward_triangles(mesh: TriangleMesh) -> Ints:
-    """(T, 3) the triangles, those that are wrongly wound reversed."""
+    """Return (T, 3) the triangles, those that are wrongly wound reversed."""
     return reversed_where(mesh.triangles, wrongly_wound(mesh))
 
 
 def reversed_where(triangles: Ints, turned: Bools) -> Ints:
-    """(T, 3) triangles, the marked ones with the opposite winding."""
+    """Return (T, 3) triangles, the marked ones with the opposite winding."""
     return np.where(turned[:, None], triangles[:, ::-1], triangles)
 
 
 def _turn_within_patches(mesh: TriangleMesh) -> tuple[Bools, Ints]:
-    """Return which triangles to turn so that neighbours agree, and the patch of each triangle.
+    """Return (T,) the triangles to turn so that neighbours agree, and the patch of each triangle.
 
     Triangle t stands twice in a graph, as it is (t) and turned (t + T); neighbours that agree join like with like.
     A patch with two sides falls into two mirror images, of which the one with its first triangle unturned is taken.
@@ -72,14 +72,14 @@ def _joints(mesh: TriangleMesh) -> _Joints:
     is_manifold = edges.n_triangles[edges.shared] == 2
     pairs, shared = edges.neighbours[is_manifold], edges.shared[is_manifold]
     is_forward = mesh.triangles < np.roll(mesh.triangles, -1, axis=1)
-    # Which of the three edges of each triangle of a pair is the shared one.
+    # The shared one of the three edges of each triangle of a pair.
     place = (edges.of_triangle[pairs] == shared[:, None, None]).argmax(axis=2)
     forward = is_forward[pairs, place]
     return _Joints(pairs, forward[:, 0] != forward[:, 1])
 
 
 def _patches_to_turn(mesh: TriangleMesh, turned: Bools, patch: Ints) -> Bools:
-    """Return for each patch whether it has to be turned as a whole."""
+    """Return the mask of the patches that have to be turned as a whole."""
     n_patches = int(patch.max()) + 1
     area = np.bincount(patch, mesh.areas, n_patches)
     turned_area = np.bincount(patch, mesh.areas * turned, n_patches)

@@ -70,7 +70,7 @@ def insert_borders(obj: bpy.types.Object) -> None:
     analysis, source = state.load(mesh), state.load_source(mesh)
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
     profile, crossings = corrected_analysis.crossings(mesh, source)
-    arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
+    arcs = analysis.part_tree.arcs_of_faces
     with normals_kept(mesh):
         faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
     for number, arc in enumerate(arcs):
@@ -90,8 +90,8 @@ def move_borders(mesh: bpy.types.Mesh) -> None:
         # Faces that were given to a part by hand do not follow arcs, so these are given to theirs in the same way.
         paint.repaint(mesh, np.where(moved != labels, moved, corrections.read_painted(mesh)))
         return
-    cuts = compute.cut_arcs(analysis.hierarchy, analysis.branches, level, mode)
-    arcs = [pieces.arc[pieces.of_face] for pieces in analysis.branches]
+    cuts = analysis.part_tree.cut_arcs(level, mode)
+    arcs = analysis.part_tree.arcs_of_faces
     for arc, cut in zip(arcs, cuts, strict=True):
         # The last arc of a tree is a root, which is body at every level.
         arc_of_part = np.full(int(moved.max(initial=0)) + 1, len(cut) - 1)

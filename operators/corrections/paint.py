@@ -55,7 +55,7 @@ def paint_part(mesh: bpy.types.Mesh, part: int, faces: np.ndarray) -> None:
 def paint_new_part(mesh: bpy.types.Mesh, faces: np.ndarray) -> None:
     """Make a part of some faces (F,)."""
     items = corrected_analysis.items_of(mesh)
-    part = corrected_analysis.free_part(state.load(mesh).hierarchy, items)
+    part = corrected_analysis.free_part(state.load(mesh).part_tree.hierarchy, items)
     _paint(mesh, items, new_item(mesh, compute.PAINT, part, other=1), faces)
 
 

@@ -41,7 +41,7 @@ def split_part(mesh: bpy.types.Mesh, part: int, position: float) -> int:
     if not 0 < position < 1:
         raise Refusal("The position of the new border is between 0, the old border, and 1, the tip.")
     items = corrected_analysis.items_of(mesh)
-    new = corrected_analysis.free_part(state.load(mesh).hierarchy, items)
+    new = corrected_analysis.free_part(state.load(mesh).part_tree.hierarchy, items)
     item = new_item(mesh, compute.SPLIT, part, other=new)
     start = next((made.value for made in items if made.kind == compute.SPLIT and made.other == part), 0.0)
     peak = corrected_analysis.peak_within(mesh, item, read_own_integers(mesh, part_writer.PART) == part)

@@ -22,12 +22,12 @@ def load(mesh: bpy.types.Mesh) -> state.StoredAnalysis:
     items = corrections.read(mesh[state.STATE])
     if not items or not compute.needs_faces(items):
         return with_items(mesh, analysis, items)
-    pieces = corrections.read_pieces(mesh, mesh[state.STATE], analysis.hierarchy, items)
+    pieces = corrections.read_pieces(mesh, mesh[state.STATE], analysis.part_tree, items)
     if pieces is not None:
-        branches, corrected = pieces
-        return replace(analysis, branches=branches, corrections=corrected)
+        part_tree, corrected = pieces
+        return replace(analysis, part_tree=part_tree, corrections=corrected)
     redrawn = with_items(mesh, analysis, items)
-    corrections.write_pieces(mesh, mesh[state.STATE], redrawn.branches, redrawn.corrections)
+    corrections.write_pieces(mesh, mesh[state.STATE], redrawn.part_tree, redrawn.corrections)
     return redrawn
 
 
@@ -45,13 +45,11 @@ def with_items(
         The part each face is painted with, -1 elsewhere; as on the mesh if None.
     """
     if not compute.needs_faces(items):
-        return replace(analysis, corrections=compute.undivided(analysis.branches, items))
+        return replace(analysis, corrections=compute.undivided(analysis.part_tree, items))
     painted = corrections.read_painted(mesh) if painted is None else painted
     graph, relief = _faces_of(mesh)
-    branches, corrected = compute.redraw(
-        divided(mesh, analysis), state.closing_heights(mesh), items, painted, relief, graph
-    )
-    return replace(analysis, branches=branches, corrections=corrected)
+    part_tree, corrected = compute.redraw(analysis.part_tree, items, painted, relief, graph)
+    return replace(analysis, part_tree=part_tree, corrections=corrected)
 
 
 def store(mesh: bpy.types.Mesh, analysis: state.StoredAnalysis, painted: np.ndarray) -> None:
@@ -60,7 +58,7 @@ def store(mesh: bpy.types.Mesh, analysis: state.StoredAnalysis, painted: np.ndar
     mesh[state.STATE][corrections.CORRECTIONS] = corrections.packed_items(items)
     corrections.write_painted(mesh, painted)
     if compute.needs_faces(items):
-        corrections.write_pieces(mesh, mesh[state.STATE], analysis.branches, analysis.corrections)
+        corrections.write_pieces(mesh, mesh[state.STATE], analysis.part_tree, analysis.corrections)
     else:
         corrections.drop_pieces(mesh, mesh[state.STATE])
 
@@ -72,24 +70,21 @@ def items_of(mesh: bpy.types.Mesh) -> tuple[compute.Correction, ...]:
 
 def crossings(mesh: bpy.types.Mesh, source: state.BorderSource) -> tuple[compute.EdgeProfile, compute.Crossings]:
     """Return where the borders of the parts that a mesh shows cross its edges, and the arcs these refer to."""
-    base, analysis = state.load(mesh), load(mesh)
+    whole, analysis = state.load(mesh).part_tree, load(mesh)
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
     corrected = analysis.corrections or compute.Corrections()
-    labels = compute.label_branches(
-        analysis.hierarchy, analysis.branches, level=level, mode=mode, corrections=corrected
-    )
-    whole = divided(mesh, base)
+    labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=corrected)
     drawn = ()
     if compute.needs_faces(corrected.items):
         _, relief = _faces_of(mesh)
         try:
-            drawn = compute.drawn_borders(whole, source.closing_heights, corrected, labels.resting, relief)
+            drawn = compute.drawn_borders(whole, corrected, labels.resting, relief)
         except LookupError as error:
             # A level that a correction says it was made at has not the part it changes.
             raise Refusal(state.DAMAGED) from error
-    cuts = compute.cut_arcs(base.hierarchy, base.branches, level, mode, corrected.branch_levels)
+    cuts = whole.cut_arcs(level, mode, corrected.branch_levels)
     joined = compute.joined_parts(corrected, labels.resting)
-    return compute.corrected_crossings(source.profile, whole, source.closing_heights, cuts, drawn, joined)
+    return compute.corrected_crossings(source.profile, whole, cuts, drawn, joined)
 
 
 def described(mesh: bpy.types.Mesh, item: compute.Correction) -> str:
@@ -105,11 +100,6 @@ def described(mesh: bpy.types.Mesh, item: compute.Correction) -> str:
     return sentences[item.kind]
 
 
-def divided(mesh: bpy.types.Mesh, analysis: state.StoredAnalysis) -> compute.Divided:
-    """Return an analysis as the engine looks parts up in it."""
-    return compute.Divided(analysis.hierarchy, analysis.branches, state.face_areas(mesh))
-
-
 def peak_within(mesh: bpy.types.Mesh, item: compute.Correction, faces: np.ndarray) -> float:
     """Return how far some faces (F,) rise above the border of a part, as a fraction of the field's range.
 
@@ -120,7 +110,7 @@ def peak_within(mesh: bpy.types.Mesh, item: compute.Correction, faces: np.ndarra
     """
     hill = _hill(mesh, item)
     _, relief = _faces_of(mesh)
-    return hill.upward * (relief.peak(hill, faces) - hill.border) / state.load(mesh).hierarchy.value_range
+    return hill.upward * (relief.peak(hill, faces) - hill.border) / state.load(mesh).part_tree.hierarchy.value_range
 
 
 def refuse_without_border(mesh: bpy.types.Mesh, item: compute.Correction) -> None:
@@ -129,10 +119,10 @@ def refuse_without_border(mesh: bpy.types.Mesh, item: compute.Correction) -> Non
 
 
 def _hill(mesh: bpy.types.Mesh, item: compute.Correction) -> compute.Hill:
-    analysis = state.load(mesh)
+    part_tree = state.load(mesh).part_tree
     items = corrections.read(mesh[state.STATE])
     try:
-        return compute.hill_of(divided(mesh, analysis), state.closing_heights(mesh), items, item)[1]
+        return compute.hill_of(part_tree, items, item)
     except LookupError:
         raise Refusal("This part has no border along the field; assign faces to it instead.") from None
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import bpy
@@ -65,18 +66,18 @@ def write_painted(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
 
 
 def write_pieces(
-    mesh: bpy.types.Mesh, state: Any, branches: tuple[compute.Branches, ...], corrections: compute.Corrections
+    mesh: bpy.types.Mesh, state: Any, part_tree: compute.PartTree, corrections: compute.Corrections
 ) -> None:
     """Store branches that were divided for corrections."""
     tables = {
-        **{f"branches_{i}": packed(pieces) for i, pieces in enumerate(branches)},
+        **{f"branches_{i}": packed(pieces) for i, pieces in enumerate(part_tree.branches)},
         "side": packed_array(corrections.side),
         "painted": packed_array(corrections.painted),
     }
     # Without their tables pieces are made again, so whatever fails from here on leaves nothing that is not true.
     if PIECES in state:
         del state[PIECES]
-    write_attribute(mesh, PIECE, branches[0].of_face)
+    write_attribute(mesh, PIECE, part_tree.branches[0].of_face)
     state[PIECES] = tables
 
 
@@ -88,9 +89,9 @@ def drop_pieces(mesh: bpy.types.Mesh, state: Any) -> None:
 
 
 def read_pieces(
-    mesh: bpy.types.Mesh, state: Any, hierarchy: compute.Hierarchy, items: tuple[compute.Correction, ...]
-) -> tuple[tuple[compute.Branches, ...], compute.Corrections] | None:
-    """Return the divided branches; None if they are not there or damaged, so that they have to be made again."""
+    mesh: bpy.types.Mesh, state: Any, part_tree: compute.PartTree, items: tuple[compute.Correction, ...]
+) -> tuple[compute.PartTree, compute.Corrections] | None:
+    """Return a part tree with divided branches; None if they are not there or damaged and have to be made again."""
     group = state.get(PIECES)
     if not hasattr(group, "to_dict") or PIECE.name not in own_names(mesh) or PIECE.name not in mesh.attributes:
         return None
@@ -98,7 +99,7 @@ def read_pieces(
         of_face = read_own_integers(mesh, PIECE)
         branches = tuple(
             compute.Branches(of_face=of_face, **unpacked(group[f"branches_{i}"], compute.Branches))
-            for i in range(len(hierarchy.trees))
+            for i in range(len(part_tree.trees))
         )
         side, painted = unpacked_array(group["side"], "int64"), unpacked_array(group["painted"], "int64")
         n_branches = branches[0].arc.size
@@ -108,19 +109,23 @@ def read_pieces(
             and lie_within(painted, -1, first_own_part(state) + MOST_OWN_PARTS)
             and all(
                 pieces.arc.size == n_branches and are_sound_branches(pieces, tree.parent.size)
-                for pieces, tree in zip(branches, hierarchy.trees, strict=True)
+                for pieces, tree in zip(branches, part_tree.trees, strict=True)
             )
         )
     except UNREADABLE:
         return None
-    return (branches, compute.Corrections(items, side, painted)) if is_sound else None
+    return (replace(part_tree, branches=branches), compute.Corrections(items, side, painted)) if is_sound else None
 
 
 def carry_over(
-    mesh: bpy.types.Mesh, items: tuple[compute.Correction, ...], old: compute.Divided, new: compute.Divided
+    mesh: bpy.types.Mesh,
+    items: tuple[compute.Correction, ...],
+    old: compute.PartTree,
+    new: compute.PartTree,
+    area: np.ndarray,
 ) -> tuple[compute.Correction, ...]:
     """Return corrections for another analysis of the mesh, and repaint its faces with the new numbers."""
-    found = compute.carried(items, old, new)
+    found = compute.carried(items, old, new, area)
     write_painted(mesh, compute.carried_painting(read_painted(mesh), items, found))
     return compute.renumbered(items, found, old.hierarchy, new.hierarchy)
 

@@ -50,8 +50,6 @@ ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, *corrections.ATTRIBUTES)
 CHOICES = ("mode", "outputs", "softness")
 REGISTRATION = "registration"  # only while the mesh shows the parts of another
 OF_PARTS = ("part_numbers", "part_names", "part_colours", REGISTRATION)
-# How levels are read, the default first.
-MODES = ("nested", "features")
 # What can be done with loose parts; the first where nothing is said of it.
 SHELLS = ("bridged", "largest", "separate")
 # More than any mesh has, so that a damaged number makes no table that fills the memory.
@@ -72,18 +70,15 @@ class StoredAnalysis:
 
     Attributes
     ----------
-    hierarchy : Hierarchy
+    part_tree : PartTree
         Without the pairs that are noise.
-    branches : tuple of Branches
-        One for each tree.
     shells : str
         What was done with loose parts, one of ``SHELLS``.
     corrections : Corrections, optional
-        What was changed by hand; it refers to these branches.
+        What was changed by hand; it refers to the branches of this tree.
     """
 
-    hierarchy: compute.Hierarchy
-    branches: tuple[compute.Branches, ...]
+    part_tree: compute.PartTree
     shells: str
     corrections: compute.Corrections | None = None
 
@@ -97,13 +92,10 @@ class BorderSource:
     profile : EdgeProfile
         Of the edges of the mesh.
     vertex_heights : (V,) float64
-    closing_heights : tuple of (A,) float64
-        For each tree, the value of the field at which each arc closes.
     """
 
     profile: compute.EdgeProfile
     vertex_heights: np.ndarray
-    closing_heights: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -139,13 +131,13 @@ def is_analyzed_for(operator: type[bpy.types.Operator], context: bpy.types.Conte
 
 def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, description: str) -> tuple[str, ...]:
     """Put an analysis on the mesh it was made from, in place of an earlier one, and return warnings for the user."""
-    hierarchy = analysis.hierarchy
-    kept = _kept(mesh, hierarchy)
+    part_tree = analysis.part_tree
+    kept = _kept(mesh, part_tree.hierarchy)
     items, warnings = _kept_corrections(mesh, analysis)
     corrections.drop_pieces(mesh, {})
-    n_trees = len(analysis.branches)
+    n_trees = len(part_tree.trees)
     remove_own_attributes(mesh, [own.name for own in BRANCHES[n_trees:] + ARCS[n_trees:]])
-    _write_branches(mesh, analysis.branches)
+    _write_branches(mesh, part_tree.branches)
     mesh[STATE] = {
         "schema": SCHEMA,
         "fingerprint": fingerprint(mesh),
@@ -153,10 +145,8 @@ def store(mesh: bpy.types.Mesh, analysis: StoredAnalysis, source: BorderSource, 
         "shells": analysis.shells,
         **kept,
         corrections.CORRECTIONS: corrections.packed_items(items),
-        "hierarchy": packed(hierarchy, _features(hierarchy)),
-        **{f"tree_{i}": packed(tree) for i, tree in enumerate(hierarchy.trees)},
-        **{f"branches_{i}": packed(branches) for i, branches in enumerate(analysis.branches)},
-        **_store_source(mesh, source),
+        **_packed_tree(part_tree),
+        "n_inside_edge": _store_source(mesh, source),
     }
     return warnings
 
@@ -187,7 +177,7 @@ def load_source(mesh: bpy.types.Mesh) -> BorderSource:
     if not all(lie_within(arc, -1, len(heights)) for arc, heights in zip(arcs, closing, strict=True)):
         raise Refusal(DAMAGED)
     along[(arcs[0][edges] < 0).any(axis=1)] = np.nan
-    return BorderSource(compute.EdgeProfile(edges, along, arcs), heights, closing)
+    return BorderSource(compute.EdgeProfile(edges, along, arcs), heights)
 
 
 def vertex_heights(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -226,16 +216,27 @@ def _write_branches(mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...]
         write_attribute(mesh, own, pieces.of_face)
 
 
-def _store_source(mesh: bpy.types.Mesh, source: BorderSource) -> dict[str, Any]:
-    """Write attributes, and return what goes into the state beside them."""
+def _packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
+    """Return the tables of a part tree as groups of the state; the measures of arcs stand beside their tree."""
+    hierarchy = part_tree.hierarchy
+    arcs = zip(hierarchy.trees, part_tree.measures, strict=True)
+    return {
+        "hierarchy": packed(hierarchy, _features(hierarchy)),
+        **{f"tree_{i}": packed(tree) | packed(measures) for i, (tree, measures) in enumerate(arcs)},
+        **{f"branches_{i}": packed(branches) for i, branches in enumerate(part_tree.branches)},
+        **{f"closing_heights_{i}": packed_array(heights) for i, heights in enumerate(part_tree.closing_heights)},
+    }
+
+
+def _store_source(mesh: bpy.types.Mesh, source: BorderSource) -> int:
+    """Write attributes, and return how many points inside each edge they have."""
     for own, arc in zip(ARCS, source.profile.arcs, strict=False):
         write_attribute(mesh, own, arc)
     write_attribute(mesh, HEIGHT, np.float32(source.vertex_heights))
     inside = np.nan_to_num(source.profile.heights[:, 1:-1])
     n_inside = inside.shape[1]
     write_attribute(mesh, EDGE_HEIGHTS, np.float32(np.pad(inside, ((0, 0), (0, 2 - n_inside)))))
-    closing = {f"closing_heights_{i}": packed_array(heights) for i, heights in enumerate(source.closing_heights)}
-    return {"n_inside_edge": n_inside, **closing}
+    return n_inside
 
 
 def load(mesh: bpy.types.Mesh) -> StoredAnalysis:
@@ -257,7 +258,7 @@ def _sound_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
         analysis = _unpacked_analysis(mesh, state)
     except UNREADABLE as error:
         raise Refusal(DAMAGED) from error
-    if not is_sound(analysis.hierarchy, analysis.branches):
+    if not is_sound(analysis.part_tree):
         raise Refusal(DAMAGED)
     return analysis
 
@@ -273,7 +274,7 @@ def mode_of(mesh: bpy.types.Mesh) -> str:
     """Return the mode the mesh was last divided in, the default one if it never was."""
     state = mesh.get(STATE)
     mode = state.get("mode") if hasattr(state, "to_dict") else None
-    return mode if mode in MODES else MODES[0]
+    return mode if mode in compute.MODES else compute.MODES[0]
 
 
 def shells_of(mesh: bpy.types.Mesh) -> str:
@@ -337,15 +338,13 @@ def _kept_corrections(
 ) -> tuple[tuple[compute.Correction, ...], tuple[str, ...]]:
     """Return the corrections of an earlier state with the numbers that their parts have now, and warnings."""
     items = corrections.read(mesh.get(STATE))
-    if not items or _has_trees(mesh[STATE], analysis.hierarchy):
+    if not items or _has_trees(mesh[STATE], analysis.part_tree.hierarchy):
         return items, ()
     try:
         old = _sound_analysis(mesh, _current(mesh))
     except Refusal:
         return (), (LOST,)
-    areas = face_areas(mesh)
-    before, after = (compute.Divided(one.hierarchy, one.branches, areas) for one in (old, analysis))
-    kept = corrections.carry_over(mesh, items, before, after)
+    kept = corrections.carry_over(mesh, items, old.part_tree, analysis.part_tree, face_areas(mesh))
     return kept, (LOST,) if len(kept) < len(items) else ()
 
 
@@ -380,12 +379,19 @@ def _features(hierarchy: compute.Hierarchy) -> slice:
 
 def _unpacked_analysis(mesh: bpy.types.Mesh, state: Any) -> StoredAnalysis:
     n_trees = 2 if "tree_1" in state else 1
-    trees = tuple(compute.ArcTree(**unpacked(state[f"tree_{i}"], compute.ArcTree)) for i in range(n_trees))
-    hierarchy = compute.Hierarchy(**unpacked(state["hierarchy"], compute.Hierarchy), trees=trees)
-    branches = tuple(
-        compute.Branches(
-            of_face=read_own_integers(mesh, BRANCHES[i]), **unpacked(state[f"branches_{i}"], compute.Branches)
-        )
-        for i in range(n_trees)
+    trees = [state[f"tree_{i}"] for i in range(n_trees)]
+    part_tree = compute.PartTree(
+        hierarchy=compute.Hierarchy(
+            **unpacked(state["hierarchy"], compute.Hierarchy),
+            trees=tuple(compute.ArcTree(**unpacked(tree, compute.ArcTree)) for tree in trees),
+        ),
+        measures=tuple(compute.ArcMeasures(**unpacked(tree, compute.ArcMeasures)) for tree in trees),
+        closing_heights=closing_heights(mesh),
+        branches=tuple(
+            compute.Branches(
+                of_face=read_own_integers(mesh, BRANCHES[i]), **unpacked(state[f"branches_{i}"], compute.Branches)
+            )
+            for i in range(n_trees)
+        ),
     )
-    return StoredAnalysis(hierarchy, branches, shells_of(mesh))
+    return StoredAnalysis(part_tree, shells_of(mesh))

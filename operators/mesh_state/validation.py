@@ -7,23 +7,25 @@ import numpy as np
 from ... import compute
 
 
-def is_sound(hierarchy: compute.Hierarchy, branches: tuple[compute.Branches, ...]) -> bool:
-    """Whether trees and branches fit each other."""
+def is_sound(part_tree: compute.PartTree) -> bool:
+    """Whether trees, measures and branches fit each other."""
+    hierarchy, branches = part_tree.hierarchy, part_tree.branches
     n_features = hierarchy.n_levels - 1
     if len({pieces.arc.size for pieces in branches}) != 1 or hierarchy.pairs.ndim != 2:
         return False
     columns = (hierarchy.pairs[:, :1].ravel(), hierarchy.persistence, hierarchy.is_maximum)
     return all(column.shape == (n_features,) for column in columns) and all(
-        _is_sound_tree(tree, n_features) and are_sound_branches(pieces, len(tree.parent))
-        for tree, pieces in zip(hierarchy.trees, branches, strict=True)
+        _is_sound_tree(tree, n_features)
+        and _are_sound_measures(measures, len(tree.parent))
+        and are_sound_branches(pieces, len(tree.parent))
+        for tree, measures, pieces in zip(hierarchy.trees, part_tree.measures, branches, strict=True)
     )
 
 
 def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
     n_arcs = tree.parent.size
-    measures = (tree.height, tree.closing_length, tree.longest, tree.roundness)
-    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, *measures)
-    if not all(column.shape == (n_arcs,) for column in columns) or any((column < 0).any() for column in measures):
+    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing)
+    if not all(column.shape == (n_arcs,) for column in columns):
         return False
     is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
     return (
@@ -34,6 +36,11 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
         and _are_sound_shells(tree)
     )
+
+
+def _are_sound_measures(measures: compute.ArcMeasures, n_arcs: int) -> bool:
+    columns = (measures.height, measures.closing_length, measures.longest, measures.roundness)
+    return all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns)
 
 
 def _are_sound_shells(tree: compute.ArcTree) -> bool:

@@ -34,12 +34,10 @@ def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: flo
     refuse_foreign_results(mesh)
     analysis = corrected_analysis.load(mesh)
     mode = mode or state.mode_of(mesh)
-    labels = compute.label_branches(
-        analysis.hierarchy, analysis.branches, mode=mode, corrections=analysis.corrections, **choice
-    )
+    labels = compute.label_branches(analysis.part_tree, mode=mode, corrections=analysis.corrections, **choice)
     with all_or_nothing(mesh):
         registration_record.take_back(mesh)
-        show_labels(mesh, labels, analysis.branches, mode)
+        show_labels(mesh, labels, analysis.part_tree, mode)
     return labels
 
 
@@ -71,21 +69,17 @@ def correct_mesh(
     level, mode = state.summarize(mesh).level, state.mode_of(mesh)
     painted = corrections.read_painted(mesh) if painted is None else painted
     analysis = corrected_analysis.with_items(mesh, state.load(mesh), items, painted)
-    labels = compute.label_branches(
-        analysis.hierarchy, analysis.branches, level=level, mode=mode, corrections=analysis.corrections
-    )
+    labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=analysis.corrections)
     if changed is not None and changed in labels.resting:
         raise Refusal(corrected_analysis.NO_EFFECT)
     with all_or_nothing(mesh):
         corrected_analysis.store(mesh, analysis, painted)
-        show_labels(mesh, labels, analysis.branches, mode)
+        show_labels(mesh, labels, analysis.part_tree, mode)
 
 
-def show_labels(
-    mesh: bpy.types.Mesh, labels: compute.BranchLabels, branches: tuple[compute.Branches, ...], mode: str
-) -> None:
+def show_labels(mesh: bpy.types.Mesh, labels: compute.BranchLabels, part_tree: compute.PartTree, mode: str) -> None:
     """Write parts to an analyzed mesh, and everything that follows them."""
-    of_faces = labels.of_faces(branches)
+    of_faces = labels.of_faces(part_tree)
     write_attribute(mesh, PART, of_faces)
     state.remember_segmentation(mesh, labels, mode)
     part_table.number_parts(mesh, labels.parts)

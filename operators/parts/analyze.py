@@ -93,10 +93,9 @@ def outcome_of(
     analysis: compute.Analysis, arrays: mesh_arrays.MeshArrays, options: dict[str, Any], seconds: float
 ) -> Outcome:
     """Return what of an analysis is left for the mesh; knows nothing of Blender either."""
-    branches = analysis.branches(arrays.polygon_of_triangle)
-    stored = state.StoredAnalysis(analysis.hierarchy, branches, options["shells"])
+    stored = state.StoredAnalysis(analysis.part_tree(arrays.polygon_of_triangle), options["shells"])
     heights = compute.vertex_heights(analysis.surface, analysis.field)
-    source = state.BorderSource(analysis.profile(arrays.edges), heights, analysis.closing_heights)
+    source = state.BorderSource(analysis.profile(arrays.edges), heights)
     is_function = isinstance(options["field"], int)
     hints = compute.judge_eigenfunctions(analysis.eigenbasis) if is_function else ()
     described = _described(options)

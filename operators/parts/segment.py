@@ -10,7 +10,7 @@ from ..messages.sentences import tell
 from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs import part_writer
 
-# In the order of state.MODES.
+# In the order of compute.MODES.
 MODE_ITEMS = [
     ("NESTED", "Nested", "Levels overlaid: also what lies between features, and small features inside large ones"),
     ("FEATURES", "Features", "Only what protrudes: each feature that is kept is one part, all else is body"),

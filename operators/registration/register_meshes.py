@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -189,14 +189,15 @@ def _flat(options: Mapping[str, Any]) -> list[Any]:
 
 def _division(shown: Shown, reference: Examined, name: str) -> tuple[compute.BranchLabels, np.ndarray]:
     """Return the parts that a reference shows, with what was corrected by hand, and the part of each face."""
-    hierarchy, branches = reference.shape.hierarchy, reference.shape.branches
+    part_tree = reference.shape.part_tree
     level = corrections = None
-    if shown.analysis is not None and _has_trees(shown.analysis.hierarchy, hierarchy):
-        level, branches, corrections = shown.level, shown.analysis.branches, shown.analysis.corrections
+    if shown.analysis is not None and _has_trees(shown.analysis.part_tree.hierarchy, part_tree.hierarchy):
+        level, corrections = shown.level, shown.analysis.corrections
+        part_tree = replace(part_tree, branches=shown.analysis.part_tree.branches)
     elif shown.analysis is not None and shown.analysis.corrections is not None and shown.analysis.corrections.items:
         raise Refusal(CORRECTED_BEFORE.format(name))
-    labels = compute.label_branches(hierarchy, branches, level=level, mode=shown.mode, corrections=corrections)
-    return labels, labels.of_faces(branches).astype(np.int64)
+    labels = compute.label_branches(part_tree, level=level, mode=shown.mode, corrections=corrections)
+    return labels, labels.of_faces(part_tree).astype(np.int64)
 
 
 def _has_trees(stored: compute.Hierarchy, hierarchy: compute.Hierarchy) -> bool:

@@ -101,7 +101,7 @@ def _write(
     for mesh, found in zip(meshes, registration.found, strict=True):
         _store(mesh, found.outcome)
         registration_record.remember(mesh, tables, match_of(found, obj.name, tickets.wish, tickets.settings), obj)
-        part_writer.show_labels(mesh, found.labels, found.outcome.stored.branches, state.mode_of(mesh))
+        part_writer.show_labels(mesh, found.labels, found.outcome.stored.part_tree, state.mode_of(mesh))
 
 
 def _object(session_uid: int) -> bpy.types.Object:

@@ -46,11 +46,11 @@ def _set_n_parts(settings: "EigenpartsMeshSettings", n_parts: int) -> None:
 
 
 def _mode(settings: "EigenpartsMeshSettings") -> int:
-    return state.MODES.index(state.mode_of(settings.id_data))
+    return compute.MODES.index(state.mode_of(settings.id_data))
 
 
 def _set_mode(settings: "EigenpartsMeshSettings", mode: int) -> None:
-    _segment(settings.id_data, mode=state.MODES[mode], level=_level(settings))
+    _segment(settings.id_data, mode=compute.MODES[mode], level=_level(settings))
 
 
 def _name(row: "EigenpartsPartRow") -> str:

@@ -140,7 +140,7 @@ def test_borders_lie_at_the_height_of_their_saddles(star):
     bpy.ops.eigenparts.segment(level=3, mode="FEATURES")
     bpy.ops.eigenparts.cut()
     engine = analyze(TriangleMesh(np.float32(star.vertices), star.triangles), field=heights.astype(float))
-    parts = engine.segment(level=3).parts
+    parts = engine.segment(level=3, mode="features").parts
     saddles = heights[parts.saddle[1:]]
     mesh, labels = obj.data, values_of(obj.data, "part")
     labels_of_edge = [set() for _ in mesh.edges]
@@ -174,10 +174,9 @@ def test_the_area_of_each_part_is_that_of_its_level_set(star):
 def exact_areas(analysis):
     """Return the area of each part of the default level, by cutting every triangle of the net."""
     from compute.segmentation.faces.arc_areas import arc_areas
-    from compute.segmentation.parts.part_labels import cut_arcs
 
     areas = {}
-    cuts = cut_arcs(analysis.hierarchy, analysis.branches(), analysis.hierarchy.default_level)
+    cuts = analysis.part_tree().cut_arcs(analysis.hierarchy.default_level, "features")
     for tree, arc, cut in zip(analysis.hierarchy.trees, analysis._arc_of_vertex, cuts, strict=True):
         rising = -analysis.field.values if tree.is_of_maxima else analysis.field.values
         shares = arc_areas(rising, arc, tree, analysis.net, np.arange(len(analysis.net.triangles)))

@@ -4,6 +4,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from compute import Cancelled, FieldError, LevelError, TriangleMesh, analyze
+from compute.segmentation.modes import MODES
 from tests.shapes import icosphere, joined, rectangle, star, torus
 
 
@@ -41,7 +42,7 @@ def test_labels_cover_every_triangle_and_fill_the_table(analysis):
 
 
 @pytest.mark.parametrize("field", ["diffusion", 1, 4])
-@pytest.mark.parametrize("mode", ["features", "nested"])
+@pytest.mark.parametrize("mode", MODES)
 def test_parts_are_connected_and_counted_at_every_level(field, mode):
     analysis = analyze(star(), field=field)
     for level in range(analysis.hierarchy.n_levels):
@@ -54,21 +55,32 @@ def test_parts_are_connected_and_counted_at_every_level(field, mode):
             assert n_pieces(analysis.mesh, segmentation.labels == part) == 1
 
 
-def test_a_part_only_shrinks_when_the_level_rises(analysis):
+def test_the_default_mode_is_the_first_one(analysis):
+    level = analysis.hierarchy.n_levels - 1
+    np.testing.assert_array_equal(
+        analysis.segment(level=level).labels, analysis.segment(level=level, mode=MODES[0]).labels
+    )
+    assert [line.part for line in analysis.borders()] == [line.part for line in analysis.borders(mode=MODES[0])]
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_part_only_shrinks_when_the_level_rises(analysis, mode):
     """Its number stays, and cuts move towards its tip."""
     for level in range(1, analysis.hierarchy.n_levels - 1):
-        coarse, fine = analysis.segment(level=level).labels, analysis.segment(level=level + 1).labels
+        coarse, fine = (analysis.segment(level=each, mode=mode).labels for each in (level, level + 1))
         for part in set(coarse.tolist()) - {0}:
             assert set(coarse[fine == part].tolist()) <= {part}
 
 
-def test_level_zero_is_all_body(analysis):
-    assert set(analysis.segment(level=0).labels.tolist()) == {0}
+@pytest.mark.parametrize("mode", MODES)
+def test_level_zero_is_all_body(analysis, mode):
+    assert set(analysis.segment(level=0, mode=mode).labels.tolist()) == {0}
 
 
-def test_the_number_of_parts_is_reached(analysis):
+@pytest.mark.parametrize("mode", MODES)
+def test_the_number_of_parts_is_reached(analysis, mode):
     for n_parts in (1, 3, 4, 5, 6):
-        segmentation = analysis.segment(n_parts=n_parts)
+        segmentation = analysis.segment(n_parts=n_parts, mode=mode)
         assert segmentation.n_parts == n_parts == len(set(segmentation.labels.tolist()))
         assert segmentation.warnings == ()
 
@@ -105,7 +117,7 @@ def test_polygons_get_the_labels_of_their_triangles(analysis):
     """Two triangles to a face: a face is in a part if more than half of it is."""
     n_triangles = len(analysis.mesh.triangles)
     faces = np.arange(n_triangles) // 2
-    (branches,) = analysis.branches(faces)
+    (branches,) = analysis.part_tree(faces).branches
     assert len(branches.of_face) == n_triangles // 2
     assert branches.area.sum() == pytest.approx(analysis.mesh.areas.sum())
 
@@ -176,7 +188,7 @@ def test_parts_end_where_a_handle_begins_if_asked_to():
     """A standing torus has one maximum and nothing to cut; its two essential saddles cut off top and bottom."""
     mesh = torus()
     analysis = analyze(mesh, field=mesh.vertices[:, 0])
-    assert analysis.segment().n_parts == 1
-    ended = analysis.segment(essential=True)
+    assert analysis.segment(mode="features").n_parts == 1
+    ended = analysis.segment(essential=True, mode="features")
     assert ended.n_parts == 3
     assert set(ended.parts.saddle[1:]) == set(analysis.complex.essential.loops.ravel())

@@ -6,10 +6,10 @@ import pytest
 
 from compute.fem import assembly, eigensolver, order_choice
 from compute.fields import scalar_field, shell_fields
-from compute.registration.dense import correspondence, deformation_graph, matched_points, nonrigid_alignment, transfer
+from compute.registration.dense import by_shape, deformation_graph, nonrigid_alignment, point_map, transfer
 from compute.registration.eigenfunctions import hypotheses, map_scoring, spectral_shape, zoomout
 from compute.registration.parts import part_matching
-from compute.segmentation.hierarchy import levels, necks, nesting
+from compute.segmentation.hierarchy import arc_measures, levels, nesting
 from compute.skeletons import bends, binding
 from compute.surface import bridging
 from tests.docs.pages import ROOT
@@ -38,13 +38,13 @@ METHOD = {
     "least cost": f"(cost + {power(map_scoring.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
     "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",
-    "nodes": f"up to {correspondence.N_NODES} nodes",
+    "nodes": f"up to {by_shape.N_NODES} nodes",
     "rounds": f"each of {len(nonrigid_alignment.ROUNDS)} rounds",
     "sliding": f"{nonrigid_alignment.SLIDING:g}² |x' - y|²",
     "lost": f"{nonrigid_alignment.TURN:g}² |n' - n|²) / {nonrigid_alignment.LOST:g}²",
     "step": f"lengthened by {nonrigid_alignment.RELAXATION:g}",
-    "gap": f"(gap / {correspondence.DOUBTFUL_GAP:g})²",
-    "stretch": f"ln {correspondence.DOUBTFUL_STRETCH:g})⁴",
+    "gap": f"(gap / {by_shape.DOUBTFUL_GAP:g})²",
+    "stretch": f"ln {by_shape.DOUBTFUL_STRETCH:g})⁴",
     "joint": f"{bends.BEND:g} · number of joints",
     "neck of a limb": f"thinner than {bends.NECK:g} of",
     "softness": f"limb: {binding.SOFTNESS:g} of its radius",
@@ -75,14 +75,14 @@ DECISIONS = {
     },
     "nested_in_blender": {
         "neck": f"of the two sides, below {nesting.NECK:g}",
-        "height": f"span {percent(necks.LEAST_HEIGHT)} of the range",
+        "height": f"span {percent(arc_measures.LEAST_HEIGHT)} of the range",
         "area": f"have {percent(nesting.LEAST_AREA)} of the area",
     },
     "matching_by_moments": {"growth": f"grow to {hypotheses.Effort().levels[-1]} first"},
     "bent_surfaces": {
-        "nodes": f"up to {correspondence.N_NODES} nodes",
+        "nodes": f"up to {by_shape.N_NODES} nodes",
         "rounds": f"in {len(nonrigid_alignment.ROUNDS)} rounds",
-        "functions": f"refined to {matched_points.DENSE_SIZES[-1]} functions",
+        "functions": f"refined to {point_map.DENSE_SIZES[-1]} functions",
     },
 }
 PAGES = {

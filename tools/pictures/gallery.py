@@ -11,8 +11,8 @@ from PIL import Image
 
 from compute import Analysis, Matching, TriangleMesh, analyze
 from compute.registration.eigenfunctions.matching import matching_shape
-from compute.registration.parts.carried_labels import Divisible, divisible
 from compute.registration.parts.population import label_matched, match_divisible, with_parts
+from compute.registration.parts.transferred_labels import Divisible, divisible
 from compute.surface.mesh import Ints
 from examples import Character, hand, humanoid, octopus, quadruped
 from tools.pictures.characters import FINGERS_UP, add_mesh, paint_faces

@@ -1,4 +1,4 @@
-"""A surface that bends: points follow the rigid motions of a few nodes spread over it.
+"""Deformation graphs: the points of a surface follow the rigid motions of a few nodes spread over it.
 
 Sumner, Schmid and Pauly, "Embedded Deformation for Shape Manipulation", SIGGRAPH 2007.
 """
@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ...surface.mesh import Floats, Ints, edges_of
 from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points
 
-# How many nodes a point follows, and how many nodes are looked at together when they are found.
+# Nodes that a point follows, and nodes that are searched from at once.
 FOLLOWED = 4
 CHUNK = 128
 # Nodes farther along the surface than this many times their mean distance are not followed.
@@ -22,13 +22,15 @@ REACH = 4.0
 
 @dataclass(frozen=True, eq=False)
 class DeformationGraph:
-    """Nodes on a surface of n points, and which of them every point follows.
+    """Nodes on a surface of n points, and those of them that every point follows.
 
     Attributes
     ----------
     points : (n, 3) float64
     nodes : (m, 3) float64
+        Places of the nodes.
     followed : (n, 4) int64
+        Nodes that each point follows.
     weights : (n, 4) float64
         Sum to 1 for each point.
     edges : (E, 2) int64
@@ -70,18 +72,24 @@ def deformation_graph(shape: SpectralShape, n_nodes: int) -> DeformationGraph:
         followed[lone] = cKDTree(nodes).query(shape.positions[lone])[1][:, None]
         weights[lone, 0] = 1.0
     weights /= weights.sum(axis=1, keepdims=True)
-    return DeformationGraph(shape.positions, nodes, followed, weights, _shared(followed, weights, len(nodes)))
+    return DeformationGraph(
+        points=shape.positions,
+        nodes=nodes,
+        followed=followed,
+        weights=weights,
+        edges=_node_pairs(followed, weights, len(nodes)),
+    )
 
 
 def _nearest_nodes(shape: SpectralShape, chosen: Ints, reach: float) -> tuple[Ints, Floats]:
-    """Return for each point the nearest nodes along edges, nearest first, and how far they are, infinite beyond."""
+    """Return (n, 4) the nodes nearest to each point along edges, in order, and their distances, infinite beyond."""
     n_points = len(shape.positions)
     followed, distance = np.zeros((n_points, FOLLOWED), dtype=np.int64), np.full((n_points, FOLLOWED), np.inf)
     paths = _paths(shape)
     for start in range(0, len(chosen), CHUNK):
-        found = dijkstra(paths, directed=False, indices=chosen[start : start + CHUNK], limit=reach).T
-        node = np.broadcast_to(start + np.arange(found.shape[1]), found.shape)
-        distance, node = np.hstack([distance, found]), np.hstack([followed, node])
+        lengths = dijkstra(paths, directed=False, indices=chosen[start : start + CHUNK], limit=reach).T
+        node = np.broadcast_to(start + np.arange(lengths.shape[1]), lengths.shape)
+        distance, node = np.hstack([distance, lengths]), np.hstack([followed, node])
         best = np.argpartition(distance, FOLLOWED - 1, axis=1)[:, :FOLLOWED]
         distance, followed = np.take_along_axis(distance, best, 1), np.take_along_axis(node, best, 1)
     order = distance.argsort(axis=1, kind="stable")
@@ -96,7 +104,8 @@ def _paths(shape: SpectralShape) -> csr_array:
     return coo_array((np.maximum(lengths, 1e-12), (ends[:, 0], ends[:, 1])), shape=(n, n)).tocsr()
 
 
-def _shared(followed: Ints, weights: Floats, n_nodes: int) -> Ints:
+def _node_pairs(followed: Ints, weights: Floats, n_nodes: int) -> Ints:
+    """Return (E, 2) the pairs of nodes that share points: the nearest of a point with each other that it follows."""
     first = np.repeat(followed[:, 0], FOLLOWED - 1)
     other = followed[:, 1:].ravel()
     counts = (weights[:, 1:].ravel() > 0) & (first != other)
@@ -106,7 +115,7 @@ def _shared(followed: Ints, weights: Floats, n_nodes: int) -> Ints:
 
 
 def warped(graph: DeformationGraph, motion: Motion, chosen: Ints | slice = slice(None)) -> Floats:
-    """Return where points of the graph go."""
+    """Return (n, 3) the places of points of the graph after a motion."""
     points, followed, weights = graph.points[chosen], graph.followed[chosen], graph.weights[chosen]
     moved = np.zeros_like(points)
     for place in range(FOLLOWED):

@@ -1,4 +1,4 @@
-"""Lay one shape onto another: as rigidly as possible, from a rough map to surfaces that touch.
+"""Nonrigid alignment: a shape is laid onto another as rigidly as possible, from a rough map to surfaces that touch.
 
 Each round takes, for points of the shape as it lies, the nearest point of the other that looks the same way, and moves
 the nodes so that points come closer along the normals, while neighbouring nodes stay together. Along the surface points
@@ -13,6 +13,7 @@ from scipy.sparse.linalg import splu
 
 from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints
+from ..eigenfunctions.spectral_shape import SpectralShape
 from .deformation_graph import FOLLOWED, DeformationGraph, Motion, turned, warped
 from .surface_points import SurfacePoints, SurfaceTree, unit_rows
 
@@ -23,6 +24,8 @@ LOST = 0.05
 # Candidates for the nearest point, and how much turning of the normal counts as distance.
 CANDIDATES = 8
 TURN = 0.05
+# Distance that the wrong side of a thin part counts as, on a surface of area 1.
+WRONG_SIDE = 0.03
 # How much a distance along the surface counts, compared with one along the normal.
 SLIDING = 0.05
 # Keeps nodes that nothing holds.
@@ -31,7 +34,7 @@ DAMPING = 1e-6
 
 @dataclass(frozen=True)
 class Round:
-    """How one round of the alignment is done.
+    """The weights of one round of the alignment.
 
     Attributes
     ----------
@@ -56,14 +59,15 @@ ROUNDS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Partners:
-    """Where points of a graph are wanted.
+class ClosestPoints:
+    """Places on a surface that points of a graph are drawn to.
 
     Attributes
     ----------
     chosen : (s,) int64
         Points of the graph.
     places, normals : (s, 3) float64
+        Of the surface.
     weights : (s,) float64
     """
 
@@ -78,8 +82,7 @@ def aligned(
     motion: Motion,
     samples: Ints,
     normals: Floats,
-    tree: SurfaceTree,
-    surface: tuple[Floats, Floats, Ints],
+    target: SpectralShape,
     progress: Progress = silent,
 ) -> Motion:
     """Return the motion that lays a graph onto a surface.
@@ -92,32 +95,35 @@ def aligned(
     samples : (s,) int64
         Points of the graph that are laid onto the surface.
     normals : (s, 3) float64
-        There, before any motion.
-    tree : SurfaceTree
-        Of the surface.
-    surface : positions (V, 3), normals (V, 3), triangles (T, 3)
+        At these points, before any motion.
+    target : SpectralShape
+        The surface.
+    progress : Progress, optional
+        Told before each round; may raise `Cancelled`.
     """
-    for number, one in enumerate(ROUNDS):
+    tree = SurfaceTree(target.positions, target.triangles, TURN, WRONG_SIDE)
+    for number, weights in enumerate(ROUNDS):
         progress(number / len(ROUNDS), "Laying one shape onto the other")
-        places, looks = warped(graph, motion, samples), turned(graph, motion, normals, samples)
-        found, distance = tree.nearest(places, looks, CANDIDATES)
-        motion = moved_closer(graph, motion, _partners(samples, looks, found, distance, surface), one)
+        places, turned_normals = warped(graph, motion, samples), turned(graph, motion, normals, samples)
+        points, distance = tree.nearest(places, turned_normals, CANDIDATES)
+        closest = _closest_points(samples, turned_normals, points, distance, target)
+        motion = gauss_newton_step(graph, motion, closest, weights)
     return motion
 
 
-def _partners(
-    samples: Ints, looks: Floats, found: SurfacePoints, distance: Floats, surface: tuple[Floats, Floats, Ints]
-) -> Partners:
-    positions, normals, triangles = surface
-    there = unit_rows(found.blend(normals, triangles))
-    away = distance**2 + TURN**2 * ((looks - there) ** 2).sum(axis=1)
+def _closest_points(
+    samples: Ints, sample_normals: Floats, points: SurfacePoints, distance: Floats, target: SpectralShape
+) -> ClosestPoints:
+    """Return nearest points with weights that fall with the distance and with the turn of the normal."""
+    normals = unit_rows(points.blend(target.normals, target.triangles))
+    away = distance**2 + TURN**2 * ((sample_normals - normals) ** 2).sum(axis=1)
     weights = 1 / (len(samples) * (1 + away / LOST**2) ** 2)
-    return Partners(samples, found.blend(positions, triangles), there, weights)
+    return ClosestPoints(samples, points.blend(target.positions, target.triangles), normals, weights)
 
 
-def moved_closer(graph: DeformationGraph, motion: Motion, partners: Partners, one: Round) -> Motion:
-    """Return the motion after one Gauss-Newton step."""
-    rows = [_pulls(graph, motion, partners), _disagreements(graph, motion, one)]
+def gauss_newton_step(graph: DeformationGraph, motion: Motion, closest: ClosestPoints, weights: Round) -> Motion:
+    """Return the motion after one Gauss-Newton step towards the closest points, as rigidly as the weights want it."""
+    rows = [_distances(graph, motion, closest), _disagreements(graph, motion, weights)]
     jacobian = _stacked([matrix for matrix, _ in rows])
     residual = np.concatenate([values for _, values in rows])
     n = jacobian.shape[1]
@@ -138,12 +144,12 @@ def _stacked(matrices: list[csr_array]) -> csr_array:
     return csr_array((data, indices, np.concatenate(indptr)), shape=(n_rows, matrices[0].shape[1]))
 
 
-def _pulls(graph: DeformationGraph, motion: Motion, partners: Partners) -> tuple[csr_array, Floats]:
+def _distances(graph: DeformationGraph, motion: Motion, closest: ClosestPoints) -> tuple[csr_array, Floats]:
     """Return derivatives and values of the distances: along the normal, and a little along each axis."""
-    away = warped(graph, motion, partners.chosen) - partners.places
-    axes = [partners.normals] + [np.broadcast_to(SLIDING * axis, away.shape) for axis in np.eye(3)]
-    directions = np.concatenate(axes) * np.tile(np.sqrt(partners.weights), 4)[:, None]
-    chosen = np.tile(partners.chosen, 4)
+    away = warped(graph, motion, closest.chosen) - closest.places
+    axes = [closest.normals] + [np.broadcast_to(SLIDING * axis, away.shape) for axis in np.eye(3)]
+    directions = np.concatenate(axes) * np.tile(np.sqrt(closest.weights), 4)[:, None]
+    chosen = np.tile(closest.chosen, 4)
     followed, weights = graph.followed[chosen], graph.weights[chosen]
     blocks = np.empty((len(chosen), FOLLOWED, 6))
     for place in range(FOLLOWED):
@@ -154,22 +160,22 @@ def _pulls(graph: DeformationGraph, motion: Motion, partners: Partners) -> tuple
     return _block_rows(blocks, followed, len(graph.nodes)), np.einsum("nj,nj->n", np.tile(away, (4, 1)), directions)
 
 
-def _disagreements(graph: DeformationGraph, motion: Motion, one: Round) -> tuple[csr_array, Floats]:
-    """Return derivatives and values of how differently neighbouring nodes move each other's places."""
+def _disagreements(graph: DeformationGraph, motion: Motion, weights: Round) -> tuple[csr_array, Floats]:
+    """Return derivatives and values of the gaps between the places to which two neighbouring nodes move one of them."""
     start, stop = graph.edges.T
     between = graph.nodes[stop] - graph.nodes[start]
     arms = np.einsum("nij,nj->ni", motion.rotations[start], between)
     gaps = arms + motion.shifts[start] - between - motion.shifts[stop]
     share = np.linalg.norm(gaps, axis=1) / np.maximum(np.linalg.norm(between, axis=1), np.finfo(float).tiny)
-    weights = np.sqrt(one.stiffness / len(start) * np.maximum(1 / (1 + (share / one.bend) ** 2), 1e-2))
+    factor = np.sqrt(weights.stiffness / len(start) * np.maximum(1 / (1 + (share / weights.bend) ** 2), 1e-2))
     blocks = np.zeros((3, len(start), 2, 6))
     for axis, direction in enumerate(np.eye(3)):
         blocks[axis, :, 0, :3] = np.cross(arms, direction)
         blocks[axis, :, 0, 3 + axis] = 1.0
         blocks[axis, :, 1, 3 + axis] = -1.0
-    blocks *= weights[None, :, None, None]
+    blocks *= factor[None, :, None, None]
     nodes = np.tile(graph.edges, (3, 1))
-    return _block_rows(blocks.reshape(-1, 2, 6), nodes, len(graph.nodes)), (gaps * weights[:, None]).T.ravel()
+    return _block_rows(blocks.reshape(-1, 2, 6), nodes, len(graph.nodes)), (gaps * factor[:, None]).T.ravel()
 
 
 def _block_rows(blocks: Floats, nodes: Ints, n_nodes: int) -> csr_array:

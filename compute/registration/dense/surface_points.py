@@ -1,4 +1,4 @@
-"""Points on a surface of triangles, and the nearest one to a place from a side."""
+"""Points on a surface of triangles, and the nearest of them that look the same way as a given place."""
 
 from dataclasses import dataclass
 
@@ -55,7 +55,7 @@ class SurfaceTree:
         self._tree = cKDTree(np.hstack([places, turn * self._normals[self._triangle_of_place]]))
 
     def nearest(self, points: Floats, normals: Floats, n_candidates: int) -> tuple[SurfacePoints, Floats]:
-        """Return the nearest point to each of (n, 3) points with unit normals, and (n,) how far it is."""
+        """Return the nearest point to each of (n, 3) points with unit normals, and (n,) its distance."""
         n_candidates = min(n_candidates, len(self._triangle_of_place))
         place = self._tree.query(np.hstack([points, self._turn * normals]), n_candidates)[1].reshape(len(points), -1)
         triangle = self._triangle_of_place[place]
@@ -64,8 +64,8 @@ class SurfaceTree:
         cosine = np.einsum("nkj,nj->nk", self._normals[triangle], normals)
         cost = distance.reshape(triangle.shape) ** 2 + (self._wrong_side * np.maximum(SAME_SIDE - cosine, 0)) ** 2
         best = np.arange(len(points)), cost.argmin(axis=1)
-        found = SurfacePoints(triangle[best], barycentric.reshape(*triangle.shape, 3)[best])
-        return found, distance.reshape(triangle.shape)[best]
+        nearest = SurfacePoints(triangle[best], barycentric.reshape(*triangle.shape, 3)[best])
+        return nearest, distance.reshape(triangle.shape)[best]
 
 
 def nearest_in_triangles(points: Floats, corners: Floats) -> tuple[Floats, Floats]:

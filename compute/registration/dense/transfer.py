@@ -1,4 +1,4 @@
-"""What lives on one surface, brought to another along a correspondence: displacements, corners of faces, labels."""
+"""Transfer along a correspondence: displacements, values at corners of faces, labels."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from ...surface.heat_smoothing import harmonic_fill
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh
 from .correspondence import Correspondence
 from .deformation_graph import nearest_rotations
-from .surface_points import SurfacePoints, SurfaceTree, unit_rows
+from .surface_points import SurfacePoints, SurfaceTree, area_vectors, unit_rows
 
 # Seams are kept between at most this many pieces; a layer with more is taken as it is at each corner.
 MOST_ISLANDS = 400
@@ -34,7 +34,7 @@ def transfer_displacements(
 
 
 def local_turns(correspondence: Correspondence, source: TriangleMesh, target: TriangleMesh) -> Floats:
-    """Return (Vt, 3, 3) how the surface around each vertex of the target is turned against the source.
+    """Return (Vt, 3, 3) the turn of the surface around each vertex, from the source to the target.
 
     Rotations; with a reflection where the mirror image of the source was matched.
     """
@@ -53,9 +53,8 @@ def _edge_products(places: Floats, target: TriangleMesh) -> Floats:
 
 
 def _normal_products(places: Floats, target: TriangleMesh) -> Floats:
-    """Return what the normals add: without them a flat neighbourhood could as well be turned over."""
-    sides = (_area_vectors(points, target.triangles) for points in (places, target.vertices))
-    before, after = sides
+    """Return the share of the normals: without them a flat neighbourhood could as well be turned over."""
+    before, after = (area_vectors(points[target.triangles]) for points in (places, target.vertices))
     products = (unit_rows(before)[:, :, None] * after[:, None, :]).reshape(-1, 9)
     return _summed(np.repeat(products, 3, axis=0), target.triangles.ravel(), len(places))
 
@@ -64,11 +63,6 @@ def _summed(products: Floats, rows: Ints, n_rows: int) -> Floats:
     columns = np.tile(np.arange(9), len(rows))
     total = coo_array((products.ravel(), (np.repeat(rows, 9), columns)), shape=(n_rows, 9)).toarray()
     return total.reshape(-1, 3, 3)
-
-
-def _area_vectors(points: Floats, triangles: Ints) -> Floats:
-    a, b, c = points[triangles].swapaxes(0, 1)
-    return np.cross(b - a, c - a)
 
 
 def majority_of_polygons(
@@ -162,12 +156,12 @@ def _move_into(points: SurfacePoints, corners: Ints, source: TriangleMesh, insid
     )
     # Which way the surface looks does not matter beside a seam.
     tree = SurfaceTree(source.vertices, source.triangles[inside], turn=0.0, wrong_side=0.0)
-    found, _ = tree.nearest(places, np.zeros_like(places), 16)
-    points.triangles[corners], points.barycentric[corners] = inside[found.triangles], found.barycentric
+    nearest, _ = tree.nearest(places, np.zeros_like(places), 16)
+    points.triangles[corners], points.barycentric[corners] = inside[nearest.triangles], nearest.barycentric
 
 
 def mixed(before: Floats, after: Floats, share: Floats | float) -> Floats:
-    """Return (n, ...) what is there and what comes, mixed by a share of the latter for all or for each row."""
+    """Return (n, ...) values before and after, mixed by a share of the latter for all or for each row."""
     share = np.asarray(share, dtype=np.float64)
     if share.ndim:
         share = share.reshape(-1, *(1,) * (np.ndim(after) - 1))
@@ -175,5 +169,5 @@ def mixed(before: Floats, after: Floats, share: Floats | float) -> Floats:
 
 
 def taken_over(share: Floats | float, n: int) -> Bools:
-    """Return (n,) where what cannot be mixed, such as labels, is replaced: where the share is at least a half."""
+    """Return (n,) the rows at which labels, which cannot be mixed, are replaced: the share is at least a half."""
     return np.broadcast_to(np.asarray(share) >= 0.5, n)

@@ -1,4 +1,4 @@
-"""Hypotheses: which function of the source is which of the target, with what sign, and how near-equal ones mix.
+"""Hypotheses on the eigenfunctions of two shapes: their order, their signs, and the mixing of near-equal ones.
 
 A hypothesis is an orthogonal matrix: column i holds the source's function i in terms of the target's functions. A
 beam search over signed places begins it, a few rounds of ascent on the agreement of the moment tensors turn it inside
@@ -25,13 +25,15 @@ MIXING = 0.35
 INERTIA = 0.3
 POLISHING_ROUNDS = 20
 SEARCHING = "Searching order and signs"
+# Signed assignments kept when a hypothesis is continued to the next level.
+CONTINUED_WIDTH = 16
 # Two hypotheses are one if their matrices agree on this share of the functions.
 SAME_HYPOTHESIS = 0.95
 
 
 @dataclass(frozen=True, eq=False)
 class Effort:
-    """How widely to search.
+    """Widths of the search.
 
     Attributes
     ----------
@@ -59,7 +61,7 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """What hypotheses are made of: the eigenvalues and moments of a shape, without the constant."""
+    """The eigenvalues and moments of a shape, without the constant: all that hypotheses are made of."""
 
     values: Floats
     moments: Moments
@@ -127,27 +129,27 @@ def find_hypotheses(
     levels = sorted({min(level, n_available) for level in effort.levels})
     steps = [section(progress, k / len(levels), (k + 1) / len(levels)) for k in range(len(levels))]
     searching, polishing = section(steps[0], 0, 0.5), section(steps[0], 0.5, 1)
-    assignments = _beam(_Scene(source, target, levels[0]), effort.beam_width, signs, progress=searching)
+    assignments = _beam(_Level(source, target, levels[0]), effort.beam_width, signs, progress=searching)
     seeds = _polish(_completed(*assignments, levels[0]), source, target, polishing)
-    found = seeds.take(_distinct(seeds.maps, np.arange(len(seeds)), effort.n_seeds))
+    hypotheses = seeds.take(_distinct(seeds.maps, np.arange(len(seeds)), effort.n_seeds))
     for level, step in zip(levels[1:], steps[1:], strict=True):
-        found = _extend(found, _Scene(source, target, level), effort, signs, step)
-    return found.take(np.argsort(-evened(found.total), kind="stable"))
+        hypotheses = _extend(hypotheses, _Level(source, target, level), effort, signs, step)
+    return hypotheses.take(np.argsort(-evened(hypotheses.total), kind="stable"))
 
 
-class _Scene:
-    """Both shapes' functions on one level, the target's with the places a function may move by."""
+class _Level:
+    """The functions of both shapes on one level, the target's with the places a function may move by."""
 
-    def __init__(self, source: Spectrum, target: Spectrum, level: int) -> None:
-        self.source, self.target, self.level = source, target, level
-        self.source_values = source.values[:level]
-        self.target_values = target.values[: level + WINDOW]
+    def __init__(self, source: Spectrum, target: Spectrum, n_functions: int) -> None:
+        self.source, self.target, self.n_functions = source, target, n_functions
+        self.source_values = source.values[:n_functions]
+        self.target_values = target.values[: n_functions + WINDOW]
         self.source_moments = source.moments.damped(self.source_values)
         self.target_moments = target.moments.damped(self.target_values)
 
 
 def _beam(
-    scene: _Scene,
+    level: _Level,
     width: int,
     signs: Mapping[int, int],
     known: Floats | None = None,
@@ -158,16 +160,16 @@ def _beam(
     ``known`` is a map of the first functions that is not to be touched any more.
     """
     n_known = 0 if known is None else len(known)
-    moments = scene.source_moments
+    moments = level.source_moments
     if known is not None:
-        rotation = np.eye(scene.level)
+        rotation = np.eye(level.n_functions)
         rotation[:n_known, :n_known] = known
         moments = moments.rotated(rotation)
     places, sign = np.arange(n_known)[None], np.ones((1, n_known))
-    for function in range(n_known, scene.level):
-        progress((function - n_known) / (scene.level - n_known), SEARCHING)
-        places, sign = _branch(places, sign, len(scene.target_values), signs.get(function))
-        order = np.argsort(-evened(_score(places, sign, scene, moments)), kind="stable")[:width]
+    for function in range(n_known, level.n_functions):
+        progress((function - n_known) / (level.n_functions - n_known), SEARCHING)
+        places, sign = _branch(places, sign, len(level.target_values), signs.get(function))
+        order = np.argsort(-evened(_score(places, sign, level, moments)), kind="stable")[:width]
         places, sign = places[order], sign[order]
     return places, sign
 
@@ -186,18 +188,18 @@ def _branch(places: Ints, sign: Floats, n_places: int, given_sign: int | None) -
     return longer[is_free], signed[is_free]
 
 
-def _score(places: Ints, sign: Floats, scene: _Scene, moments: Moments) -> Floats:
-    """Return how well the moments and eigenvalues of assignments agree; 2 is best."""
+def _score(places: Ints, sign: Floats, level: _Level, moments: Moments) -> Floats:
+    """Return (b,) the agreement of the moments and eigenvalues under assignments; 2 is best."""
     n = places.shape[1]
-    where = places[:, :, None, None], places[:, None, :, None], places[:, None, None, :]
+    assigned = places[:, :, None, None], places[:, None, :, None], places[:, None, None, :]
     cube = sign[:, :, None, None] * sign[:, None, :, None] * sign[:, None, None, :]
     total = np.zeros(len(places))
-    for own, other in (
-        (moments.symmetric, scene.target_moments.symmetric),
-        (moments.alternating, scene.target_moments.alternating),
+    for source, target in (
+        (moments.symmetric, level.target_moments.symmetric),
+        (moments.alternating, level.target_moments.alternating),
     ):
-        total += _similarity(own[:n, :n, :n], other[where] * cube)
-    stretch = np.abs(np.log(scene.source_values[:n]) - np.log(scene.target_values)[places])
+        total += _similarity(source[:n, :n, :n], target[assigned] * cube)
+    stretch = np.abs(np.log(level.source_values[:n]) - np.log(level.target_values)[places])
     return total - stretch.mean(axis=1)
 
 
@@ -224,16 +226,17 @@ def nearest_orthogonal(matrices: Floats) -> Floats:
 def _polish(maps: Floats, source: Spectrum, target: Spectrum, progress: Progress) -> Hypotheses:
     """Turn maps uphill on the agreement of the moments, mixing functions of similar eigenvalues only."""
     level = maps.shape[-1]
-    here, there = source.moments.damped(source.values[:level]), target.moments.damped(target.values[:level])
+    source_moments = source.moments.damped(source.values[:level])
+    target_moments = target.moments.damped(target.values[:level])
     ratio = np.log(source.values[:level])[None, :] - np.log(target.values[:level])[:, None]
     weight = np.exp(-((ratio / MIXING) ** 2))
     for done in range(POLISHING_ROUNDS):
         progress(done / POLISHING_ROUNDS, SEARCHING)
-        gradient = agreement_gradient(maps, here.symmetric, there.symmetric)
-        gradient += agreement_gradient(maps, here.alternating, there.alternating)
+        gradient = agreement_gradient(maps, source_moments.symmetric, target_moments.symmetric)
+        gradient += agreement_gradient(maps, source_moments.alternating, target_moments.alternating)
         maps = nearest_orthogonal((gradient + INERTIA / np.sqrt(level) * maps) * weight)
-    symmetric = agreement(maps, here.symmetric, there.symmetric)
-    return Hypotheses(maps, symmetric, agreement(maps, here.alternating, there.alternating))
+    symmetric = agreement(maps, source_moments.symmetric, target_moments.symmetric)
+    return Hypotheses(maps, symmetric, agreement(maps, source_moments.alternating, target_moments.alternating))
 
 
 def _distinct(maps: Floats, order: Ints, n_wanted: int) -> Ints:
@@ -249,19 +252,19 @@ def _distinct(maps: Floats, order: Ints, n_wanted: int) -> Ints:
 
 
 def _extend(
-    found: Hypotheses, scene: _Scene, effort: Effort, signs: Mapping[int, int], progress: Progress
+    shorter: Hypotheses, level: _Level, effort: Effort, signs: Mapping[int, int], progress: Progress
 ) -> Hypotheses:
-    """Return the best continuations of hypotheses to the scene's level."""
+    """Return the best continuations of hypotheses to the next level."""
     starts, parent = [], []
-    for number, known in enumerate(found.maps):
-        progress(0.5 * number / len(found), SEARCHING)
-        places, sign = _beam(scene, 16, signs, known)
-        wider = np.eye(scene.level)
+    for number, known in enumerate(shorter.maps):
+        progress(0.5 * number / len(shorter), SEARCHING)
+        places, sign = _beam(level, CONTINUED_WIDTH, signs, known)
+        wider = np.eye(level.n_functions)
         wider[: len(known), : len(known)] = known
         n_tried = 2 * effort.n_branches
-        starts.append(_completed(places[:n_tried], sign[:n_tried], scene.level) @ wider)
+        starts.append(_completed(places[:n_tried], sign[:n_tried], level.n_functions) @ wider)
         parent.append(np.full(len(starts[-1]), number))
-    polished = _polish(np.concatenate(starts), scene.source, scene.target, section(progress, 0.5, 1))
+    polished = _polish(np.concatenate(starts), level.source, level.target, section(progress, 0.5, 1))
     chosen = _limit_per_parent(polished, np.concatenate(parent), effort.n_branches)
     return polished.take(chosen[: effort.n_kept])
 

@@ -1,4 +1,4 @@
-"""Which hypothesis is right: every one is refined to a map that can be judged as geometry."""
+"""Scores of hypotheses: every one is refined to a map of points, which can be measured as geometry."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from .zoomout import nearest_points, sample_functions, with_constant, zoom_out
 
 # Two candidates are one if their maps of the first functions differ by less, relative to the identity's norm.
 SAME_MAP = 0.3
-JUDGED_FUNCTIONS = 10
+COMPARED_FUNCTIONS = 10
 # Cost and relative distance to the next best at which doubt begins: among 400 pairs of poses all below were right.
 DOUBTFUL_COST = 3e-6
 # Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
@@ -33,7 +33,7 @@ LEAST_ORIENTED = 0.3
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A hypothesis after refinement, with what speaks for and against it.
+    """A hypothesis after refinement, with its scores.
 
     Attributes
     ----------
@@ -112,13 +112,13 @@ def fit_of(candidate: Candidate) -> float:
 
 
 def _difference(one: Candidate, other: Candidate) -> float:
-    first = slice(1, 1 + JUDGED_FUNCTIONS)
+    first = slice(1, 1 + COMPARED_FUNCTIONS)
     gap = one.functional_map[first, first] - other.functional_map[first, first]
     return float(np.linalg.norm(gap) / np.sqrt(len(gap)))
 
 
-class Judge:
-    """Refines and judges hypotheses for one pair of shapes; keeps what all of them need.
+class MapScorer:
+    """Refines and scores hypotheses for one pair of shapes; keeps what all of them need.
 
     Parameters
     ----------
@@ -133,62 +133,71 @@ class Judge:
         self._target_samples = sample_functions(target.functions[target.samples], sizes)
         self._spectra = spectrum_of(source), spectrum_of(target)
         last = max(sizes)
-        self._embedding = source.project(source.positions)[:last]
+        self._positions = source.project(source.positions)[:last]
         self._neighbours = _neighbours(target)
         self._normals = source.project(source.normals)[:last]
 
-    def judge(
-        self, found: Hypotheses, signs: Mapping[int, int] | None = None, progress: Progress = silent
+    def score(
+        self, hypotheses: Hypotheses, signs: Mapping[int, int] | None = None, progress: Progress = silent
     ) -> list[Candidate]:
         """Return a candidate for each hypothesis, in their order.
 
         Parameters
         ----------
-        found : Hypotheses
+        hypotheses : Hypotheses
         signs : mapping of int to +1 or -1, optional
             Signs that are kept whatever fits better, by the source's function from 0.
         progress : Progress, optional
             May raise `Cancelled`.
         """
         candidates = []
-        for number, start in enumerate(found.maps):
-            progress(number / len(found), "Refining what was found")
+        for number, start in enumerate(hypotheses.maps):
+            progress(number / len(hypotheses), "Refining what was found")
             candidates.append(self._candidate(start, signs or {}))
         return candidates
 
     def _candidate(self, start: Floats, signs: Mapping[int, int]) -> Candidate:
-        here, there = self._source_samples, self._target_samples
-        grown = zoom_out(with_constant(start), here, there, self._sizes, signs)
-        nearest = nearest_points(grown, here.functions, there.functions)
+        source, target = self._source_samples, self._target_samples
+        refined = zoom_out(with_constant(start), source, target, self._sizes, signs)
+        nearest = nearest_points(refined, source.functions, target.functions)
+        symmetric, alternating = self._moments(refined, len(start))
         return Candidate(
-            start, grown, nearest, *self._moments(grown, len(start)),
-            self._commutation(grown), self._orientation(grown), self._curvature(nearest), self._tearing(nearest),
-        )  # fmt: skip
+            start=start,
+            functional_map=refined,
+            nearest=nearest,
+            symmetric=symmetric,
+            alternating=alternating,
+            commutation=self._commutation(refined),
+            orientation=self._orientation(refined),
+            curvature=self._curvature(nearest),
+            tearing=self._tearing(nearest),
+        )
 
-    def _moments(self, grown: Floats, level: int) -> tuple[float, float]:
-        """Return how far the moments agree under the refined map, made orthogonal, of a hypothesis' functions."""
-        rotation = nearest_orthogonal(grown[1 : level + 1, 1 : level + 1])
-        here, there = (spectrum.moments.damped(spectrum.values[:level]) for spectrum in self._spectra)
-        symmetric = agreement(rotation, here.symmetric, there.symmetric)
-        return float(symmetric), float(agreement(rotation, here.alternating, there.alternating))
+    def _moments(self, functional_map: Floats, level: int) -> tuple[float, float]:
+        """Return the agreement of the moments under the refined map, made orthogonal, of a hypothesis' functions."""
+        rotation = nearest_orthogonal(functional_map[1 : level + 1, 1 : level + 1])
+        source, target = (spectrum.moments.damped(spectrum.values[:level]) for spectrum in self._spectra)
+        symmetric = agreement(rotation, source.symmetric, target.symmetric)
+        return float(symmetric), float(agreement(rotation, source.alternating, target.alternating))
 
-    def _commutation(self, grown: Floats) -> float:
-        source, target = self._source.values[: grown.shape[1]], self._target.values[: grown.shape[0]]
-        return float(((grown * source - target[:, None] * grown) ** 2).sum() / (source**2).sum())
+    def _commutation(self, functional_map: Floats) -> float:
+        n_target, n_source = functional_map.shape
+        source_values, target_values = self._source.values[:n_source], self._target.values[:n_target, None]
+        commutator = functional_map * source_values - target_values * functional_map
+        return float((commutator**2).sum() / (source_values**2).sum())
 
-    def _orientation(self, grown: Floats) -> float:
-        """Compare the normals of the target's triangles, mapped to the source, with the normals that are there."""
+    def _orientation(self, functional_map: Floats) -> float:
+        """Compare the normals of the target's triangles, mapped to the source, with the normals of the source."""
         target = self._target
-        coefficients = np.hstack([grown @ self._embedding, grown @ self._normals])
-        mapped = target.functions[:, : len(grown)] @ coefficients
+        coefficients = np.hstack([functional_map @ self._positions, functional_map @ self._normals])
+        mapped = target.functions[:, : len(functional_map)] @ coefficients
         a, b, c = mapped[target.triangles].swapaxes(0, 1)
         side = np.einsum("ij,ij->i", np.cross((b - a)[:, :3], (c - a)[:, :3]), (a + b + c)[:, 3:])
         return float((target.areas * np.sign(side)).sum() / target.areas.sum())
 
     def _curvature(self, nearest: Ints) -> float:
-        here = self._source.curvature[self._source.samples][nearest]
-        there = self._target.curvature[self._target.samples]
-        return _correlation(here, there)
+        source_curvature = self._source.curvature[self._source.samples][nearest]
+        return _correlation(source_curvature, self._target.curvature[self._target.samples])
 
     def _tearing(self, nearest: Ints) -> float:
         pairs, length = self._neighbours
@@ -198,7 +207,7 @@ class Judge:
 
 
 def _neighbours(shape: SpectralShape) -> tuple[Ints, Floats]:
-    """Return pairs of samples that lie side by side, not across a thin part, and how far apart they are."""
+    """Return pairs of samples that lie side by side, not across a thin part, and their distances."""
     positions, normals = shape.positions[shape.samples], shape.normals[shape.samples]
     n_near = min(NEIGHBOURS + 1, len(positions))
     near = cKDTree(positions).query(positions, n_near)[1][:, 1:]

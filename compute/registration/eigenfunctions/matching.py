@@ -12,11 +12,11 @@ from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from .hypotheses import Effort, find_hypotheses, spectrum_of
-from .map_scoring import Candidate, Judge, confidence_of, distinct_candidates, fit_of, ranked
+from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded
 
-# How wide the search is; the next effort is made only where the ones before leave doubt.
+# Widths of the search; the next effort is made only where the ones before leave doubt.
 EFFORTS = (
     Effort(),
     Effort(n_seeds=30, n_branches=2, n_kept=12, n_refined=10),
@@ -31,7 +31,7 @@ FLIPPABLE = max(EFFORTS[0].levels)
 
 @dataclass(frozen=True, eq=False)
 class Matching:
-    """Which function of a source is which of a target.
+    """A map between the eigenfunctions of two shapes, from a source to a target.
 
     Attributes
     ----------
@@ -48,6 +48,16 @@ class Matching:
         Whether the source's mirror image was matched.
     symmetric, alternating : float
         Agreement of the moment tensors, 1 at best.
+
+    Examples
+    --------
+    A function that is the negative of its partner, and two that have changed places:
+
+    >>> import numpy as np
+    >>> from compute import Matching
+    >>> matching = Matching(np.array([[-1.0, 0, 0], [0, 0, 1], [0, 1, 0]]), confidence=0.9)
+    >>> matching.order.tolist(), matching.signs.tolist()
+    ([0, 2, 1], [-1, 1, 1])
     """
 
     map: Floats
@@ -90,16 +100,35 @@ def match(
     progress : callable, optional
         ``progress(fraction, text)``; may raise `Cancelled`.
 
+    Returns
+    -------
+    Matching
+        From the source's functions to the target's.
+
     Raises
     ------
     RegistrationError
-        If a sign is given for a function that has none, or is not +1 or -1.
+        If a sign is given for a function that has none, or is not +1 or -1, or a shape was analyzed shell by shell.
+
+    References
+    ----------
+    .. [1] Reuter, IJCV 2010, section 4.6, on order and signs.
+    .. [2] Melzi et al., "ZoomOut: Spectral Upsampling for Efficient Shape Correspondence", SIGGRAPH Asia 2019.
+
+    Examples
+    --------
+    >>> from compute import TriangleMesh, analyze, match
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> longer = TriangleMesh(square.vertices * [2, 1, 1], square.triangles)
+    >>> source, target = (analyze(mesh, field=mesh.vertices[:, 0]) for mesh in (square, longer))
+    >>> matching = match(source, target)
+    >>> matching.same_topology, matching.confidence
+    (True, 1.0)
     """
     progress = rising(progress or silent)
-    here = matching_shape(source, section(progress, 0, 0.3))
-    there = matching_shape(target, section(progress, 0.3, 0.6))
+    shapes = matching_shape(source, section(progress, 0, 0.3)), matching_shape(target, section(progress, 0.3, 0.6))
     rest = section(progress, 0.6, 1)
-    return match_surfaces(source.surface, target.surface, here, there, flips=flips, mirrored=mirrored, progress=rest)
+    return match_surfaces(source.surface, target.surface, *shapes, flips=flips, mirrored=mirrored, progress=rest)
 
 
 def matching_shape(analysis: Analysis, progress: Progress = silent) -> SpectralShape:
@@ -119,7 +148,7 @@ def match_surfaces(
     mirrored: bool = False,
     progress: Progress = silent,
 ) -> Matching:
-    """Match two shapes as `match` does, where what it makes of them first is at hand."""
+    """Match two shapes as `match` does, from their surfaces and the spectral shapes of these."""
     signs = _checked_signs(flips or {})
     if not signs and not mirrored and share_topology(source, target):
         return match_by_number(source_shape, target_shape)
@@ -151,11 +180,11 @@ def match_shapes(
     if mirrored:
         source = source.mirrored()
     n_available = min(source.n_functions, target.n_functions)
-    judge = Judge(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+    scorer = MapScorer(source, target, [min(size, n_available) for size in MATCHING_SIZES])
     if signs:
-        candidates, rivals = _candidates_with_signs(source, target, judge, signs, progress)
+        candidates, rivals = _candidates_with_signs(source, target, scorer, signs, progress)
     else:
-        candidates = rivals = _ranked_candidates(source, target, judge, progress)
+        candidates = rivals = _ranked_candidates(source, target, scorer, progress)
     best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
     confidence = confidence_of(best, rivals)
     # What the best one leaves over is for the alternatives, if they fit.
@@ -164,32 +193,32 @@ def match_shapes(
 
 
 def _ranked_candidates(
-    source: SpectralShape, target: SpectralShape, judge: Judge, progress: Progress
+    source: SpectralShape, target: SpectralShape, scorer: MapScorer, progress: Progress
 ) -> list[Candidate]:
-    """Return judged hypotheses, best first; the search is widened until the best of them is sure."""
+    """Return scored hypotheses, best first; the search is widened until the best of them is sure."""
     spectra = spectrum_of(source), spectrum_of(target)
     best_first: list[Candidate] = []
     for number, effort in enumerate(EFFORTS):
         searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
-        found = find_hypotheses(*spectra, effort, progress=searching)
-        judged = judge.judge(found.best(effort.n_refined), progress=refining)
-        best_first = ranked(best_first + judged)
+        hypotheses = find_hypotheses(*spectra, effort, progress=searching)
+        scored = scorer.score(hypotheses.best(effort.n_refined), progress=refining)
+        best_first = ranked(best_first + scored)
         if confidence_of(best_first[0], best_first) >= SURE:
             break
     return best_first
 
 
 def _candidates_with_signs(
-    source: SpectralShape, target: SpectralShape, judge: Judge, signs: Mapping[int, int], progress: Progress
+    source: SpectralShape, target: SpectralShape, scorer: MapScorer, signs: Mapping[int, int], progress: Progress
 ) -> tuple[list[Candidate], list[Candidate]]:
-    """Return judged hypotheses that keep given signs, best first, and with them the best that do not need to."""
+    """Return scored hypotheses that keep given signs, best first, and with them the best that do not need to."""
     keeping, leaving = _halves(progress)
     effort, spectra = EFFORTS[0], (spectrum_of(source), spectrum_of(target))
-    judged = []
+    scored = []
     for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
-        found = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
-        judged.append(ranked(judge.judge(found, given, refining)))
-    return judged[0], judged[0] + judged[1]
+        hypotheses = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
+        scored.append(ranked(scorer.score(hypotheses, given, refining)))
+    return scored[0], scored[0] + scored[1]
 
 
 def _halves(progress: Progress) -> tuple[Progress, Progress]:
@@ -198,7 +227,13 @@ def _halves(progress: Progress) -> tuple[Progress, Progress]:
 
 def _matching_of(candidate: Candidate, confidence: float, mirrored: bool) -> Matching:
     functional_map = candidate.functional_map[1:, 1:]
-    return Matching(functional_map, confidence, (), False, mirrored, candidate.symmetric, candidate.alternating)
+    return Matching(
+        map=functional_map,
+        confidence=confidence,
+        mirrored=mirrored,
+        symmetric=candidate.symmetric,
+        alternating=candidate.alternating,
+    )
 
 
 def _checked_signs(flips: Mapping[int, int]) -> dict[int, int]:

@@ -1,4 +1,4 @@
-"""Moment tensors: what fixes the signs of eigenfunctions, left and right included.
+"""Moment tensors, which fix the signs of eigenfunctions, left and right included.
 
 Both are integrals over the surface of products of three functions, so they do not depend on the triangulation or the
 pose. The symmetric one does not see the orientation of the surface; the alternating one is the signed volume of the

@@ -20,7 +20,7 @@ from .moments import Moments, moments_of, point_areas
 N_SAMPLES = 1000
 # Functions that moments are taken of: the last level of matching and the places a function may move by.
 MOMENT_FUNCTIONS = 18
-# What matching asks of a shape, and is kept there.
+# Attributes that matching asks of a shape, which keeps them.
 KEPT = ("samples", "moments", "normals", "curvature")
 # Time of the smoothing of curvature, in units of the area: details below 2 % of the shape's size do not count.
 CURVATURE_TIME = 5e-4
@@ -54,7 +54,7 @@ class SpectralShape:
 
     @property
     def n_functions(self) -> int:
-        """How many functions, the constant included."""
+        """Number of functions, the constant included."""
         return len(self.values)
 
     def mirrored(self) -> "SpectralShape":
@@ -105,7 +105,7 @@ class SpectralShape:
         return np.tanh(smooth / (3 * np.median(np.abs(smooth)) + np.finfo(float).tiny))
 
     def shares_at_points(self, labels: Ints, n_labels: int) -> csr_array:
-        """Return (n, n_labels) how much area of each label lies around each point, a third of each triangle there.
+        """Return (n, n_labels) the area of each label around each point, a third of each triangle at the point.
 
         Parameters
         ----------
@@ -129,17 +129,17 @@ def spectral_shape(basis: Eigenbasis) -> SpectralShape:
     area = net.areas.sum()
     constant = np.ones((len(node), 1))
     return SpectralShape(
-        _unit_positions(net.positions[node], corner.reshape(-1, 3), area),
-        corner.reshape(-1, 3),
-        np.append(0.0, basis.values * area),
-        np.hstack([constant, basis.functions[node] * np.sqrt(area)]),
-        node,
-        basis.surface.input_triangle[net.triangle_of_surface],
+        positions=_unit_positions(net.positions[node], corner.reshape(-1, 3), area),
+        triangles=corner.reshape(-1, 3),
+        values=np.append(0.0, basis.values * area),
+        functions=np.hstack([constant, basis.functions[node] * np.sqrt(area)]),
+        node=node,
+        input_triangle=basis.surface.input_triangle[net.triangle_of_surface],
     )
 
 
 def prepare_shape(shape: SpectralShape, progress: Progress) -> None:
-    """Compute what is kept on a shape, telling in between; the callback may raise `Cancelled`."""
+    """Compute the attributes that a shape keeps, with a report before each; the callback may raise `Cancelled`."""
     for number, name in enumerate(KEPT):
         progress(number / len(KEPT), "Measuring the functions")
         getattr(shape, name)

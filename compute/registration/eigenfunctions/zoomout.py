@@ -10,7 +10,7 @@ from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints
 from ...surface.ties import CHOICE
 
-# Sizes of the functional map, the constant included, from hypotheses to a map that can be judged.
+# Sizes of the functional map, the constant included, from hypotheses to a map that can be scored.
 MATCHING_SIZES = (17, 17, 20, 24, 29, 35, 42, 50)
 # Query points that are compared with all others at once, which bounds the memory.
 CHUNK = 2000
@@ -62,21 +62,21 @@ def zoom_out(
     ----------
     .. [1] Melzi et al., "ZoomOut: Spectral Upsampling for Efficient Shape Correspondence", SIGGRAPH Asia 2019.
     """
-    grown = start
+    functional_map = start
     for number, size in enumerate(sizes):
         progress(number / len(sizes), "Refining the map")
         if size >= len(start):
-            grown = with_signs(_step(grown, source, target, size), signs or {})
-    return grown
+            functional_map = with_signs(_step(functional_map, source, target, size), signs or {})
+    return functional_map
 
 
-def _step(grown: Floats, source: SampledFunctions, target: SampledFunctions, size: int) -> Floats:
-    matched = source.functions[nearest_points(grown, source.functions, target.functions)]
+def _step(functional_map: Floats, source: SampledFunctions, target: SampledFunctions, size: int) -> Floats:
+    matched = source.functions[nearest_points(functional_map, source.functions, target.functions)]
     return target.fits[size] @ matched[:, :size]
 
 
 def nearest_points(functional_map: Floats, source: Floats, target: Floats, progress: Progress = silent) -> Ints:
-    """Return for each target point the source point that is nearest after the map of functions.
+    """Return (m,) the source point that is nearest to each target point after the map of functions.
 
     Parameters
     ----------
@@ -125,10 +125,10 @@ def with_signs(functional_map: Floats, signs: Mapping[int, int]) -> Floats:
     """Return a map, the constant included, in which given functions of the source have the given signs."""
     if not signs:
         return functional_map
-    found = rounded(functional_map[1:, 1:])[1]
+    present = rounded(functional_map[1:, 1:])[1]
     turn = np.ones(functional_map.shape[1])
     for function, sign in signs.items():
-        turn[1 + function] = sign * found[function]
+        turn[1 + function] = sign * present[function]
     return functional_map * turn
 
 

@@ -1,4 +1,4 @@
-"""The paper's way for fine levels: coarse parts first, then what they divide into, each pair analyzed on its own.
+"""The paper's matching on fine levels: coarse parts first, then what they divide into, each pair analyzed on its own.
 
 The first functions of a whole shape do not tell fingers from each other; those of an arm alone do.
 """
@@ -10,7 +10,7 @@ import numpy as np
 from ...analysis import Analysis, analyze_part, segment_part
 from ...progress import Progress, rising, silent
 from ...segmentation.parts.part_labels import Segmentation
-from .diagrams_matching import DiagramMatching, PartPairs, match_diagrams, match_tips
+from .diagram_matching import DiagramMatching, PartPairs, match_diagrams, match_tips
 
 # A part with fewer faces has no parts of its own to be matched.
 LEAST_FACES = 60
@@ -18,7 +18,7 @@ LEAST_FACES = 60
 
 @dataclass(frozen=True, eq=False)
 class SubpartPairs:
-    """What two parts that correspond divide into.
+    """The parts into which two corresponding parts divide.
 
     Attributes
     ----------
@@ -56,9 +56,9 @@ def match_subparts(
     parts : pair of Segmentation
         Of the source and of the target, at a coarse level.
     pairs : PartPairs
-        Which of these parts correspond, such as `match_tips` tells.
+        The parts that correspond, such as those of `match_tips`.
     progress : Progress, optional
-        Told before each pair; may raise `Cancelled`.
+        Called before each pair; may raise `Cancelled`.
 
     Returns
     -------
@@ -71,7 +71,7 @@ def match_subparts(
        continued on the subparts".
     """
     progress = rising(progress or silent)
-    found = []
+    subparts = []
     for number, labels in enumerate(zip(pairs.source.tolist(), pairs.target.tolist(), strict=True)):
         progress(number / len(pairs.source), f"Matching inside part {labels[0]}")
         if all(_can_be_divided(whole, label) for whole, label in zip(parts, labels, strict=True)):
@@ -79,9 +79,9 @@ def match_subparts(
                 analyze_part(one, whole, label)
                 for one, whole, label in zip((source, target), parts, labels, strict=True)
             ]
-            found.append(_match_pieces(pieces[0], pieces[1], labels))
+            subparts.append(_match_pieces(pieces[0], pieces[1], labels))
     progress(1.0, "Done")
-    return tuple(one for one in found if len(one.pairs.source))
+    return tuple(one for one in subparts if len(one.pairs.source))
 
 
 def _can_be_divided(whole: Segmentation, label: int) -> bool:
@@ -89,6 +89,13 @@ def _can_be_divided(whole: Segmentation, label: int) -> bool:
 
 
 def _match_pieces(source: Analysis, target: Analysis, labels: tuple[int, int]) -> SubpartPairs:
-    own = segment_part(source), segment_part(target)
+    parts = segment_part(source), segment_part(target)
     matching = match_diagrams(source, target)
-    return SubpartPairs(*labels, *own, matching, match_tips(source, target, own, matching))
+    return SubpartPairs(
+        of_source=labels[0],
+        of_target=labels[1],
+        source=parts[0],
+        target=parts[1],
+        matching=matching,
+        pairs=match_tips(source, target, parts, matching),
+    )

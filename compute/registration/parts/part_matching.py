@@ -1,17 +1,17 @@
-"""Which part of one shape is which of another: the subtrees of the merge tree that cover the same points."""
+"""Matching of parts: the subtrees of the merge tree that cover the same points as the parts of a reference."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...segmentation.faces.level_cuts import cut_arcs
 from ...segmentation.hierarchy.arc_tree import ArcTree
 from ...segmentation.hierarchy.levels import Hierarchy
+from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import BODY, Parts
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import evened
-from .carried_labels import Divisible, GivenParts, given_parts
+from .transferred_labels import Divisible, GivenParts, given_parts
 
 # A part and its partner share at least this much of what they cover together.
 LEAST_OVERLAP = 0.3
@@ -29,7 +29,7 @@ class ReferenceParts:
     level : int
         Of the reference.
     shares : (n, P) sparse
-        How much of the area around each point of the reference each part covers, what grows out of it included.
+        Share of the area around each point of the reference that each part covers, with all that grows out of it.
     is_inside : (P, P) bool
         Whether the first part grows out of the second, directly or not.
     least_persistence : float
@@ -49,8 +49,15 @@ def reference_parts(labels: Ints, parts: Parts, level: int, reference: Divisible
     given = given_parts(labels, parts, reference)
     is_inside = _nesting(given.id, given.parent)
     whole = given.shares[:, 1:] @ (is_inside | np.eye(len(given.id), dtype=bool)).astype(float)
-    least = _least_persistence(reference.hierarchy, level)
-    return ReferenceParts(given, parts, level, csr_array(whole), is_inside, least)
+    least = _least_persistence(reference.part_tree.hierarchy, level)
+    return ReferenceParts(
+        given=given,
+        table=parts,
+        level=level,
+        shares=csr_array(whole),
+        is_inside=is_inside,
+        least_persistence=least,
+    )
 
 
 def _least_persistence(hierarchy: Hierarchy, level: int) -> float:
@@ -65,8 +72,8 @@ def _nesting(ids: Ints, parents: Ints) -> Bools:
     return is_inside
 
 
-def partner_cuts(reference: ReferenceParts, target: Divisible, landing: Ints) -> tuple[list[Ints], int]:
-    """Return for each of the target's trees the part that is cut off at each arc, 0 where none is, and its level.
+def partner_cuts(reference: ReferenceParts, target: Divisible, point_map: Ints) -> tuple[list[Ints], int]:
+    """Return (A,) for each of the target's trees the part cut off at each arc, 0 where none is, and the target's level.
 
     For every part of the reference the subtree of the target's merge trees is taken that covers the same points best,
     at whatever level it stands there. What else the target has that is as persistent as the reference's parts gets
@@ -76,36 +83,35 @@ def partner_cuts(reference: ReferenceParts, target: Divisible, landing: Ints) ->
     ----------
     reference : ReferenceParts
     target : Divisible
-    landing : (n,) int64
+    point_map : (n,) int64
         The reference's point that each of the target's points corresponds to.
     """
-    hierarchy, branches, shape = target.hierarchy, target.branches, target.shape
-    level = hierarchy.level_of_threshold(reference.least_persistence)
-    carried = reference.shares[landing]
+    part_tree, shape = target.part_tree, target.shape
+    level = part_tree.hierarchy.level_of_threshold(reference.least_persistence)
+    target_shares = reference.shares[point_map]
     covers = []
-    for tree, pieces in zip(hierarchy.trees, branches, strict=True):
-        arc_of_triangle = pieces.arc[pieces.of_face][target.face]
-        covers.append(_cover(tree, shape.shares_at_points(arc_of_triangle, len(tree.parent)), carried))
+    for tree, arc_of_face in zip(part_tree.trees, part_tree.arcs_of_faces, strict=True):
+        covers.append(_cover(tree, shape.shares_at_points(arc_of_face[target.face], len(tree.parent)), target_shares))
     first_free = 1 + reference.given.highest
     cuts = [np.zeros(len(cover.overlap), dtype=np.int64) for cover in covers]
     for part, tree_number, arc in _partners(reference, covers):
         cuts[tree_number][arc] = reference.given.id[part]
-    for number, own in enumerate(cut_arcs(hierarchy, branches, level)):
-        is_free = _apart_from(np.flatnonzero(cuts[number]), covers[number]) & (own != BODY)
-        cuts[number][is_free] = first_free + own[is_free]
+    for number, cut in enumerate(part_tree.cut_arcs(level, FEATURES)):
+        is_free = _apart_from(np.flatnonzero(cuts[number]), covers[number]) & (cut != BODY)
+        cuts[number][is_free] = first_free + cut[is_free]
     return cuts, level
 
 
 def with_first_free(cuts: list[Ints], highest_shared: int, first_free: int) -> list[Ints]:
     """Renumber the parts without a partner from a number on, so that no other shape has their labels."""
-    own = np.unique(np.concatenate(cuts))
-    own = own[own > highest_shared]
-    return [np.where(cut > highest_shared, first_free + np.searchsorted(own, cut), cut) for cut in cuts]
+    parts = np.unique(np.concatenate(cuts))
+    unshared = parts[parts > highest_shared]
+    return [np.where(cut > highest_shared, first_free + np.searchsorted(unshared, cut), cut) for cut in cuts]
 
 
 @dataclass(frozen=True, eq=False)
 class _Cover:
-    """What the subtrees of a merge tree cover of the reference's parts; A arcs, P parts.
+    """The overlap of the subtrees of a merge tree with the reference's parts; A arcs, P parts.
 
     Attributes
     ----------
@@ -144,11 +150,11 @@ def _inside_arcs(parent: Ints) -> Bools:
 
 def _partners(reference: ReferenceParts, covers: list[_Cover]) -> list[tuple[int, int, int]]:
     """Return (part, tree, arc) of all partners: the best overlaps first that are nested as the parts are."""
-    found: list[tuple[int, int, int]] = []
+    partners: list[tuple[int, int, int]] = []
     for part, tree, arc in _by_overlap(covers):
-        if all(_fits((part, tree, arc), other, reference.is_inside, covers) for other in found):
-            found.append((part, tree, arc))
-    return found
+        if all(_fits((part, tree, arc), other, reference.is_inside, covers) for other in partners):
+            partners.append((part, tree, arc))
+    return partners
 
 
 def _by_overlap(covers: list[_Cover]) -> list[tuple[int, int, int]]:

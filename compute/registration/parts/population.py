@@ -10,12 +10,13 @@ import numpy as np
 from ...analysis import Analysis
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
+from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
-from ..dense.matched_points import source_points
+from ..dense.point_map import point_map
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
-from .carried_labels import Divisible, FaceLabels, carry_labels, divisible
 from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
+from .transferred_labels import Divisible, FaceLabels, divisible, transfer_labels
 
 # Seconds between looks whether shapes in an executor are ready, and whether the user has cancelled.
 INTERVAL = 0.2
@@ -28,7 +29,9 @@ class Reference:
     Attributes
     ----------
     shape : Divisible
+        With its surface, functions and hierarchy.
     parts : ReferenceParts
+        The parts to be found on other shapes.
     """
 
     shape: Divisible
@@ -65,13 +68,13 @@ def register(
     ----------
     analyses : sequence of Analysis
     reference : int
-        Which of them gives the parts.
+        Number of the shape that gives the parts, from 0.
     level : int, optional
-        Level of the reference; its default level if None.
+        Level of the reference whose features are the parts; its default level if None.
     executor : concurrent.futures.Executor, optional
         Runs the pairs: threads, processes or a cluster that offers this interface.
     progress : Progress, optional
-        Told several times a second; may raise `Cancelled`. Pairs that run in an executor by then are finished there.
+        Called several times a second; may raise `Cancelled`. Pairs that run in an executor by then are finished there.
 
     Returns
     -------
@@ -85,18 +88,30 @@ def register(
         If there is no such shape.
     LevelError
         If the reference has no such level.
+
+    References
+    ----------
+    .. [1] Reuter, IJCV 2010, sections 4.6 and 4.7.
+
+    Examples
+    --------
+    >>> from compute import TriangleMesh, analyze, register
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> poses = [analyze(TriangleMesh(square.vertices * [k, 1, 1], square.triangles), order=1) for k in (1, 2)]
+    >>> [segmentation.labels.tolist() for segmentation in register(poses)]
+    [[0, 0], [0, 0]]
     """
     if not 0 <= reference < len(analyses):
         raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
     progress = rising(progress or silent)
     progress(0.0, "Preparing the reference")
-    own = analyses[reference].segment(level=level)
-    prepared = prepare_reference(analyses[reference], own)
+    reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
+    prepared = prepare_reference(analyses[reference], reference_segmentation)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
-    run = _run_here if executor is None else partial(_run_elsewhere, executor)
+    run = _run_serially if executor is None else partial(_run_in_executor, executor)
     segmentations = [result.segmentation for result in run(prepared, others, progress)]
-    segmentations.insert(reference, own)
-    return with_own_labels(segmentations, reference)
+    segmentations.insert(reference, reference_segmentation)
+    return with_disjoint_labels(segmentations, reference)
 
 
 def prepare_reference(analysis: Analysis, segmentation: Segmentation) -> Reference:
@@ -127,10 +142,9 @@ def match_divisible(
     progress: Progress = silent,
 ) -> Matching:
     """Match the reference (source) with a target, as `match` does."""
-    here, there = reference.shape, target
-    return match_surfaces(
-        here.surface, there.surface, here.shape, there.shape, flips=flips, mirrored=mirrored, progress=progress
-    )
+    surfaces = reference.shape.surface, target.surface
+    shapes = reference.shape.shape, target.shape
+    return match_surfaces(*surfaces, *shapes, flips=flips, mirrored=mirrored, progress=progress)
 
 
 def label_matched(
@@ -146,43 +160,43 @@ def label_matched(
         May raise `Cancelled`.
     """
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
-    landing = source_points(source, target.shape, matching, section(progress, 0, 0.8))
+    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8))
     progress(0.8, "Carrying the parts over")
-    cuts, level = partner_cuts(reference.parts, target, landing)
+    cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
     same_faces = matching.same_topology and np.array_equal(reference.shape.face, target.face)
-    return carry_labels(reference.parts.given, target, None if same_faces else landing, cuts, level)
+    return transfer_labels(reference.parts.given, target, None if same_faces else to_reference, cuts, level)
 
 
-def with_own_labels(segmentations: Sequence[Segmentation], reference: int) -> list[Segmentation]:
+def with_disjoint_labels(segmentations: Sequence[Segmentation], reference: int) -> list[Segmentation]:
     """Renumber the parts without a partner, so that no two shapes share such a label."""
     n_shared = int(segmentations[reference].parts.id.max())
     first_free = n_shared + 1
     renumbered = []
     for segmentation in segmentations:
-        own = np.unique(segmentation.parts.id[segmentation.parts.id > n_shared])
-        renumbered.append(_renumbered(segmentation, own, first_free) if len(own) else segmentation)
-        first_free += len(own)
+        unshared = np.unique(segmentation.parts.id[segmentation.parts.id > n_shared])
+        renumbered.append(_renumbered(segmentation, unshared, first_free) if len(unshared) else segmentation)
+        first_free += len(unshared)
     return renumbered
 
 
-def _renumbered(segmentation: Segmentation, own: Ints, first_free: int) -> Segmentation:
+def _renumbered(segmentation: Segmentation, unshared: Ints, first_free: int) -> Segmentation:
     parts = segmentation.parts
     table = np.arange(int(parts.id.max()) + 1)
-    table[own] = first_free + np.arange(len(own))
+    table[unshared] = first_free + np.arange(len(unshared))
     new_parts = replace(parts, id=table[parts.id], parent=table[parts.parent])
     return replace(segmentation, labels=table[segmentation.labels].astype(np.int32), parts=new_parts)
 
 
-def _run_here(reference: Reference, targets: Sequence[Analysis], progress: Progress) -> Iterator[Registered]:
+def _run_serially(reference: Reference, targets: Sequence[Analysis], progress: Progress) -> Iterator[Registered]:
     """Yield the registered shapes one after the other."""
     for number, target in enumerate(targets):
-        told = section(progress, number / len(targets), (number + 1) / len(targets))
-        yield register_one(reference, target, told)
+        step = section(progress, number / len(targets), (number + 1) / len(targets))
+        yield register_one(reference, target, step)
         progress((number + 1) / len(targets), f"Registered {number + 1} of {len(targets)} shapes")
 
 
-def _run_elsewhere(
+def _run_in_executor(
     executor: Executor, reference: Reference, targets: Sequence[Analysis], progress: Progress
 ) -> Iterator[Registered]:
     """Yield the registered shapes in their order; those that have not begun are given up where this is cancelled."""

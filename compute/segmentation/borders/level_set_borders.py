@@ -62,7 +62,7 @@ class Polyline:
 
 def closing_heights(values: Floats, tree: ArcTree) -> Floats:
     """Return (A,) the value of the field at which each arc closes; not a number for the root and whole shells."""
-    return np.where(tree.saddle < 0, np.nan, values[tree.saddle])
+    return np.where(tree.has_saddle, values[tree.saddle], np.nan)
 
 
 def cross_edges(

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...surface.mesh import Bools, Floats, Ints, sum_by
-from ..faces.branches import Branches
-from ..faces.level_cuts import cut_arcs
+from ..faces.part_tree import PartTree
+from ..hierarchy.arc_tree import NO_ARC
 from ..hierarchy.levels import Hierarchy
 from ..hierarchy.nesting import first_own_part
 from .corrections import LEVEL, MERGE, PAINT, SPLIT, Correction
@@ -17,57 +17,58 @@ SAME = 0.5
 MOST_LEVELS = 64
 
 
-@dataclass(frozen=True, eq=False)
-class Divided:
-    """A hierarchy with the faces of its arcs and the area (F,) of each face."""
-
-    hierarchy: Hierarchy
-    branches: tuple[Branches, ...]
-    area: Floats
-
-
 @dataclass(frozen=True)
 class Place:
-    """An arc at which a part is cut off: which tree, which arc, and on which level."""
+    """The number of a tree, the arc of it at which a part is cut off, and the level on which it is."""
 
     tree: int
     arc: int
     level: int
 
 
-def place_of(divided: Divided, part: int, level: int, mode: str, branch_levels: tuple[tuple[int, int], ...]) -> Place:
-    """Return where a part is cut off on a level.
+def place_of(
+    part_tree: PartTree, part: int, level: int, mode: str, branch_levels: tuple[tuple[int, int], ...]
+) -> Place:
+    """Return the arc at which a part is cut off on a level.
 
     Raises
     ------
     LookupError
         If the level has no such part.
     """
-    level = min(level, divided.hierarchy.n_levels - 1)
-    cuts = cut_arcs(divided.hierarchy, divided.branches, level, mode, branch_levels)
-    for tree, cut in enumerate(cuts):
+    level = min(level, part_tree.hierarchy.n_levels - 1)
+    for tree, cut in enumerate(part_tree.cut_arcs(level, mode, branch_levels)):
         for arc in np.flatnonzero(cut == part).tolist():
             return Place(tree, arc, level)
     raise LookupError(part)
 
 
-def carried(items: tuple[Correction, ...], old: Divided, new: Divided) -> dict[int, tuple[int, int]]:
+def carried(items: tuple[Correction, ...], old: PartTree, new: PartTree, area: Floats) -> dict[int, tuple[int, int]]:
     """Return for each part that corrections mention the (number, level) it has in another analysis, if it is there.
 
     Numbers that corrections gave to parts of their own are numbered on from the last one of the new analysis.
+
+    Parameters
+    ----------
+    items : tuple of Correction
+    old, new : PartTree
+        Of two analyses of a mesh.
+    area : (F,) float64
+        Of its faces.
     """
     found = {0: (0, 0)}
-    shift = first_own_part(new.hierarchy.trees[0]) - first_own_part(old.hierarchy.trees[0])
+    first_own = first_own_part(old.trees[0])
+    shift = first_own_part(new.trees[0]) - first_own
     for mode in sorted({item.mode for item in items}):
         candidates = _candidates(new, mode)
         for item in items:
             if item.mode != mode:
                 continue
             for part in _mentioned(item):
-                if part >= first_own_part(old.hierarchy.trees[0]):
+                if part >= first_own:
                     found[part] = (part + shift, item.level)
                 elif part not in found:
-                    same = _same_part(_inside(old, part, item, items), new, candidates)
+                    same = _same_part(_inside(old, part, item, items), new, area, candidates)
                     found |= {} if same is None else {part: same}
     return found
 
@@ -102,46 +103,45 @@ def _mentioned(item: Correction) -> tuple[int, ...]:
     return (item.part, item.other) if item.kind in (MERGE, SPLIT) else (item.part,)
 
 
-def _inside(old: Divided, part: int, item: Correction, items: tuple[Correction, ...]) -> Bools:
-    """Tell which faces (F,) lie in a part as it was when the correction was made; none if it cannot be found."""
+def _inside(old: PartTree, part: int, item: Correction, items: tuple[Correction, ...]) -> Bools:
+    """Mask (F,) of the faces in a part as it was when a correction was made; empty if it cannot be found."""
     branch_levels = tuple((other.part, int(other.value)) for other in items if other.kind == LEVEL)
     try:
         place = place_of(old, part, item.level, item.mode, branch_levels)
     except LookupError:
-        return np.zeros(len(old.area), dtype=bool)
-    branches = old.branches[place.tree]
-    return old.hierarchy.trees[place.tree].subtree(place.arc)[branches.arc][branches.of_face]
+        return np.zeros(old.n_faces, dtype=bool)
+    return old.faces_inside(place.tree, place.arc)
 
 
-def _candidates(new: Divided, mode: str) -> dict[tuple[int, int], tuple[int, int]]:
+def _candidates(new: PartTree, mode: str) -> dict[tuple[int, int], tuple[int, int]]:
     """Return (number, level) for each (tree, arc) at which some level cuts a part off."""
     n_levels, default_level = new.hierarchy.n_levels, new.hierarchy.default_level
     # The default level first, as its numbers are those that are seen first.
     levels = [default_level, *range(1, min(n_levels, MOST_LEVELS)), n_levels - 1]
     found: dict[tuple[int, int], tuple[int, int]] = {}
     for level in dict.fromkeys(levels):
-        for tree, cut in enumerate(cut_arcs(new.hierarchy, new.branches, level, mode)):
+        for tree, cut in enumerate(new.cut_arcs(level, mode)):
             for arc in np.flatnonzero(cut).tolist():
                 found.setdefault((tree, arc), (int(cut[arc]), level))
     return found
 
 
 def _same_part(
-    inside: Bools, new: Divided, candidates: dict[tuple[int, int], tuple[int, int]]
+    inside: Bools, new: PartTree, area: Floats, candidates: dict[tuple[int, int], tuple[int, int]]
 ) -> tuple[int, int] | None:
     """Return the (number, level) of the part that has most in common with some faces."""
     best, share = None, SAME
-    for tree, (grown, branches) in enumerate(zip(new.hierarchy.trees, new.branches, strict=True)):
-        of_face, n_arcs = branches.arc[branches.of_face], len(grown.parent)
-        common = sum_by(of_face[inside], new.area[inside], n_arcs)
-        own = sum_by(of_face, new.area, n_arcs)
-        for arc, parent in enumerate(grown.parent.tolist()):
-            if parent >= 0:
+    for number, (tree, of_face) in enumerate(zip(new.trees, new.arcs_of_faces, strict=True)):
+        n_arcs = len(tree.parent)
+        common = sum_by(of_face[inside], area[inside], n_arcs)
+        whole = sum_by(of_face, area, n_arcs)
+        for arc, parent in enumerate(tree.parent.tolist()):
+            if parent != NO_ARC:
                 common[parent] += common[arc]
-                own[parent] += own[arc]
-        either = own + new.area[inside].sum() - common
+                whole[parent] += whole[arc]
+        either = whole + area[inside].sum() - common
         for (of_tree, arc), named in candidates.items():
-            if of_tree == tree and common[arc] > share * either[arc]:
+            if of_tree == number and common[arc] > share * either[arc]:
                 best, share = named, float(common[arc] / either[arc])
     return best
 

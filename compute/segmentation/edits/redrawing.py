@@ -1,4 +1,4 @@
-"""Branches as corrections need them: divided where a border is moved or drawn, and where faces were painted."""
+"""Part trees as corrections need them: branches divided at borders that are moved or drawn, and at painted faces."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -6,14 +6,15 @@ from math import isnan
 
 import numpy as np
 
-from ...surface.mesh import Bools, Floats, Ints
+from ...surface.mesh import Bools, Ints
 from ..borders.edge_profile import EdgeProfile
 from ..borders.level_set_borders import Crossings, cross_edges
-from ..faces.branches import Branches, divided_branches
+from ..faces.branches import divided_branches
 from ..faces.face_graph import FaceGraph
+from ..faces.part_tree import PartTree
 from ..hierarchy.arc_tree import ArcTree, flat_tree
 from .corrections import AWAY, LEVEL, MERGE, MOVE, PAINT, SPLIT, Correction, Corrections
-from .part_tracking import Divided, place_of
+from .part_tracking import place_of
 from .relief import Hill, Relief
 
 # How many sides a border along the field has.
@@ -42,21 +43,14 @@ class Drawn:
 
 
 def redraw(
-    divided: Divided,
-    closing_heights: tuple[Floats, ...],
-    items: tuple[Correction, ...],
-    painted: Ints,
-    relief: Relief,
-    graph: FaceGraph,
-) -> tuple[tuple[Branches, ...], Corrections]:
+    part_tree: PartTree, items: tuple[Correction, ...], painted: Ints, relief: Relief, graph: FaceGraph
+) -> tuple[PartTree, Corrections]:
     """Divide branches so that every level with all corrections is a label for each of them.
 
     Parameters
     ----------
-    divided : Divided
-        With the branches of the analysis.
-    closing_heights : tuple of (A,) float64
-        For each tree, the value of the field at which each arc closes.
+    part_tree : PartTree
+        Of the analysis.
     items : tuple of Correction
     painted : (F,) int64
         The part each face was painted with, -1 elsewhere.
@@ -67,16 +61,16 @@ def redraw(
     code = painted + 1
     for row, item in enumerate(items):
         if item.kind in (SPLIT, MOVE):
-            sides[row] = _sides(divided, closing_heights, items, item, relief)
+            sides[row] = _sides(part_tree, items, item, relief)
             _, code = np.unique(code * N_SIDES + sides[row], return_inverse=True)
             code = code.reshape(-1)
-    branches, face = divided_branches(divided.branches, code, graph)
-    return branches, Corrections(items, sides[:, face], painted[face])
+    branches, face = divided_branches(part_tree.branches, code, graph)
+    return replace(part_tree, branches=branches), Corrections(items, sides[:, face], painted[face])
 
 
-def undivided(branches: tuple[Branches, ...], items: tuple[Correction, ...]) -> Corrections:
+def undivided(part_tree: PartTree, items: tuple[Correction, ...]) -> Corrections:
     """Return corrections that need no branch to be divided."""
-    n = len(branches[0].arc)
+    n = len(part_tree.branches[0].arc)
     return Corrections(items, np.full((len(items), n), AWAY), np.full(n, -1))
 
 
@@ -85,10 +79,8 @@ def needs_faces(items: tuple[Correction, ...]) -> bool:
     return any(item.kind in (SPLIT, MOVE, PAINT) for item in items)
 
 
-def hill_of(
-    divided: Divided, closing_heights: tuple[Floats, ...], items: tuple[Correction, ...], item: Correction
-) -> tuple[int, Hill]:
-    """Return the tree and the hill that the border of a correction lies on.
+def hill_of(part_tree: PartTree, items: tuple[Correction, ...], item: Correction) -> Hill:
+    """Return the part whose border a correction moves or draws anew.
 
     Raises
     ------
@@ -100,12 +92,12 @@ def hill_of(
     while item.part in origin and origin[item.part] is not item:
         item = replace(origin.pop(item.part), kind=item.kind)
     branch_levels = tuple((other.part, int(other.value)) for other in items if other.kind == LEVEL)
-    place = place_of(divided, item.part, item.level, item.mode, branch_levels)
-    tree, border = divided.hierarchy.trees[place.tree], float(closing_heights[place.tree][place.arc])
+    place = place_of(part_tree, item.part, item.level, item.mode, branch_levels)
+    border = float(part_tree.closing_heights[place.tree][place.arc])
     if isnan(border):
         # A whole shell ends nowhere.
         raise LookupError(item.part)
-    return place.tree, Hill(tree, place.arc, border)
+    return Hill(part_tree.trees[place.tree].is_of_maxima, border, part_tree.faces_inside(place.tree, place.arc))
 
 
 def level_of_border(hill: Hill, item: Correction, value_range: float) -> float:
@@ -114,33 +106,23 @@ def level_of_border(hill: Hill, item: Correction, value_range: float) -> float:
     return hill.border + hill.upward * inward * value_range
 
 
-def _sides(
-    divided: Divided,
-    closing_heights: tuple[Floats, ...],
-    items: tuple[Correction, ...],
-    item: Correction,
-    relief: Relief,
-) -> Ints:
+def _sides(part_tree: PartTree, items: tuple[Correction, ...], item: Correction, relief: Relief) -> Ints:
     try:
-        tree, hill = hill_of(divided, closing_heights, items, item)
+        hill = hill_of(part_tree, items, item)
     except LookupError:
         return np.full(relief.n_faces, AWAY)
-    level = level_of_border(hill, item, divided.hierarchy.value_range)
-    return relief.sides(hill, divided.branches[tree], level)
+    return relief.sides(hill, level_of_border(hill, item, part_tree.hierarchy.value_range))
 
 
 def corrected_crossings(
-    profile: EdgeProfile,
-    divided: Divided,
-    closing_heights: tuple[Floats, ...],
-    cuts: list[Ints],
-    drawn: tuple[Drawn, ...],
-    joined: Mapping[int, int],
+    profile: EdgeProfile, part_tree: PartTree, cuts: list[Ints], drawn: tuple[Drawn, ...], joined: Mapping[int, int]
 ) -> tuple[EdgeProfile, Crossings]:
     """Find where the borders of parts cross edges after corrections.
 
     Parameters
     ----------
+    profile : EdgeProfile
+    part_tree : PartTree
     cuts : list of (A,) int64
         For each tree, the part that is cut off at each arc.
     drawn : tuple of Drawn
@@ -157,12 +139,12 @@ def corrected_crossings(
     moved = {border.part for border in drawn}
     kept = [
         np.where(np.isin(cut, list(moved)) | _is_joined(tree, cut, joined), 0, cut)
-        for tree, cut in zip(divided.hierarchy.trees, cuts, strict=True)
+        for tree, cut in zip(part_tree.trees, cuts, strict=True)
     ]
     is_known = profile.arcs[0] >= 0
     # Each drawn border is the end of a tree of two arcs: what lies beyond it, and the rest.
-    trees = (*divided.hierarchy.trees, *(flat_tree(1, border.hill.tree.is_of_maxima) for border in drawn))
-    heights = (*closing_heights, *(np.array([border.level, np.nan]) for border in drawn))
+    trees = (*part_tree.trees, *(flat_tree(1, border.hill.is_of_maxima) for border in drawn))
+    heights = (*part_tree.closing_heights, *(np.array([border.level, np.nan]) for border in drawn))
     arcs = tuple(np.where(is_known, np.where(border.is_beyond, 0, 1), -1).astype(np.int32) for border in drawn)
     extended = replace(profile, arcs=(*profile.arcs, *arcs))
     ends = [*kept, *(np.array([border.part, 0]) for border in drawn)]
@@ -170,21 +152,15 @@ def corrected_crossings(
 
 
 def drawn_borders(
-    divided: Divided,
-    closing_heights: tuple[Floats, ...],
-    corrections: Corrections,
-    resting: tuple[int, ...],
-    relief: Relief,
+    part_tree: PartTree, corrections: Corrections, resting: tuple[int, ...], relief: Relief
 ) -> tuple[Drawn, ...]:
     """Return the borders along the field that corrections have put where they are; those that rest are left out."""
     drawn = []
     for row, item in enumerate(corrections.items):
         if item.kind in (SPLIT, MOVE) and row not in resting:
-            tree, hill = hill_of(divided, closing_heights, corrections.items, item)
-            level = level_of_border(hill, item, divided.hierarchy.value_range)
-            branches = divided.branches[tree]
-            in_part = hill.tree.subtree(hill.arc)[branches.arc][branches.of_face]
-            is_beyond = relief.reach(hill, in_part) & (hill.upward * relief.heights > hill.upward * level)
+            hill = hill_of(part_tree, corrections.items, item)
+            level = level_of_border(hill, item, part_tree.hierarchy.value_range)
+            is_beyond = relief.reach(hill) & (hill.upward * relief.heights > hill.upward * level)
             drawn.append(Drawn(item.other if item.kind == SPLIT else item.part, hill, level, is_beyond))
     return tuple(drawn)
 
@@ -197,8 +173,8 @@ def joined_parts(corrections: Corrections, resting: tuple[int, ...]) -> dict[int
 
 
 def _is_joined(tree: ArcTree, cut: Ints, joined: Mapping[int, int]) -> Bools:
-    """Tell which of the cut arcs (A,) have the same part on both sides."""
-    outside = np.where(tree.parent < 0, 0, tree.spread(cut)[tree.parent])
+    """Mask (A,) of the cut arcs that have the same part on both sides."""
+    outside = np.where(tree.is_root, 0, tree.spread(cut)[tree.parent])
     whole = [(_end(part, joined), _end(around, joined)) for part, around in zip(cut, outside, strict=True)]
     return np.array([part == around for part, around in whole], dtype=bool)
 

@@ -8,32 +8,31 @@ import numpy as np
 from ...msc.merge_tree import ends_of_paths
 from ...surface.cleaning import Surface
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, sum_by
-from ..faces.branches import Branches
-from ..hierarchy.arc_tree import ArcTree
 from .corrections import AWAY, BEFORE, BEYOND
 
 
 @dataclass(frozen=True, eq=False)
 class Hill:
-    """The part of a tree that corrections move borders on.
+    """A part that rises or falls from its border along the field, and whose border corrections move.
 
     Attributes
     ----------
-    tree : ArcTree
-    arc : int
-        Where the part is cut off.
+    is_of_maxima : bool
+        Whether it rises from its border.
     border : float
-        The value of the field there.
+        The value of the field at its border.
+    is_inside : (F,) bool
+        Mask of its faces.
     """
 
-    tree: ArcTree
-    arc: int
+    is_of_maxima: bool
     border: float
+    is_inside: Bools
 
     @property
     def upward(self) -> int:
         """1 if the part lies above its border, -1 if below."""
-        return 1 if self.tree.is_of_maxima else -1
+        return 1 if self.is_of_maxima else -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +50,7 @@ class Relief:
         The face each of them belongs to.
     n_faces : int
     stands_for : (F,) int64
-        The analyzed face whose fate each face shares.
+        The analyzed face whose label each face takes: itself, or the nearest one if it is not analyzed.
     """
 
     surface: Surface
@@ -61,22 +60,25 @@ class Relief:
     n_faces: int
     stands_for: Ints
 
-    def sides(self, hill: Hill, branches: Branches, level: float) -> Ints:
-        """Tell (F,) on which side of a border at a level of the field each face lies, as seen from a part.
+    def sides(self, hill: Hill, level: float) -> Ints:
+        """(F,) the side of a border at a level of the field that each face lies on, as seen from a part.
 
-        A face is in the part's reach if the steepest way up from it ends in the part, so that a border that is moved
+        It is ``AWAY``, ``BEFORE`` or ``BEYOND``.
+
+        A face is in the part's reach if the steepest path up from it ends in the part, so that a border that is moved
         outward stops where the next hill begins.
         """
-        in_part = hill.tree.subtree(hill.arc)[branches.arc][branches.of_face]
-        reached = self._share(self.reach(hill, in_part)) >= 0.5
+        reached = self._share(self.reach(hill)) >= 0.5
         height = self._share(hill.upward * self.heights)
-        side = np.where(in_part | reached, np.where(reached & (height > hill.upward * level), BEYOND, BEFORE), AWAY)
+        side = np.where(
+            hill.is_inside | reached, np.where(reached & (height > hill.upward * level), BEYOND, BEFORE), AWAY
+        )
         return side[self.stands_for]
 
-    def reach(self, hill: Hill, in_part: Bools) -> Bools:
-        """Tell from which vertices (V,) the steepest way up ends in a part, given its faces (F,)."""
+    def reach(self, hill: Hill) -> Bools:
+        """Mask (V,) of the vertices from which the steepest path up ends in the part."""
         ends_inside = np.zeros(len(self.heights), dtype=bool)
-        ends_inside[self.corners[in_part[self.face]]] = True
+        ends_inside[self.corners[hill.is_inside[self.face]]] = True
         summit = self._ascents[hill.upward]
         return ends_inside[summit][self.surface.vertex_of_input]
 
@@ -87,7 +89,7 @@ class Relief:
 
     @cached_property
     def _ascents(self) -> dict[int, Ints]:
-        """For either direction, the vertex (V,) where the steepest way ends."""
+        """For either direction, the vertex (V,) where the steepest path ends."""
         return {upward: _summits(self.surface.mesh, upward * self.heights) for upward in (1, -1)}
 
     def _share(self, values: Floats | Bools) -> Floats:
@@ -113,7 +115,7 @@ def relief_of(surface: Surface, heights: Floats, face_of_triangle: Ints, stands_
 
 
 def _summits(mesh: TriangleMesh, heights: Floats) -> Ints:
-    """Return the vertex (V,) that the way over the highest neighbours ends at; ties go by index."""
+    """Return the vertex (V,) that the path over the highest neighbours ends at; ties go by index."""
     rank = np.empty(len(heights), dtype=np.int64)
     rank[np.argsort(heights, kind="stable")] = np.arange(len(heights))
     low, high = mesh.edges.vertices.T

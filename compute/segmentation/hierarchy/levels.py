@@ -9,7 +9,8 @@ from ...msc.merge_tree import MergeTree
 from ...msc.morse_smale import FieldTopology
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import ROUNDING, evened
-from .arc_tree import NEVER, ArcTree, Features, arc_of_vertex, build_arc_tree
+from .arc_tree import ALWAYS, NEVER, ArcTree
+from .tree_building import Features, arc_of_vertex, build_arc_tree
 
 # Pairs below this fraction of the field's range are noise of the triangulation (Reuter 2009, section 4.3).
 NOISE_THRESHOLD = 1e-4
@@ -104,7 +105,15 @@ def build_hierarchy(
     n_features = int((persistence > noise).sum())
     always = np.unique(topology.essential.loops) if ends_at_handles else np.zeros(0, dtype=np.int64)
     trees, arcs = _grow_trees(sweeps, pairs[::-1][:n_features], always)
-    return Hierarchy(pairs, persistence, is_maximum, value_range, n_features + 1, trees), arcs
+    hierarchy = Hierarchy(
+        pairs=pairs,
+        persistence=persistence,
+        is_maximum=is_maximum,
+        value_range=value_range,
+        n_levels=n_features + 1,
+        trees=trees,
+    )
+    return hierarchy, arcs
 
 
 def _pairs_by_persistence(values: Floats, sweeps: list[_Sweep]) -> tuple[Ints, Floats, Bools]:
@@ -127,8 +136,8 @@ def _grow_trees(sweeps: list[_Sweep], features: Ints, always: Ints) -> tuple[tup
     closing = np.full(n_vertices, NEVER)
     # Where pairs share a saddle, the most persistent one keeps it alive: the last one that is written stays.
     closing[features[::-1, 1]] = np.arange(len(features))[::-1]
-    closing[always] = -1
-    known = Features(part, closing, len(extrema) - len(features), len(features))
+    closing[always] = ALWAYS
+    known = Features(part, closing, n_roots=len(extrema) - len(features), n_features=len(features))
     trees, arcs = [], []
     for sweep in sweeps:
         tree, places = build_arc_tree(sweep.tree, sweep.is_of_maxima, known)

@@ -1,26 +1,26 @@
-"""Levels overlaid: which cuts between features are worth a part of their own."""
+"""Levels overlaid: the cuts between features that are worth a part of their own."""
 
 import numpy as np
 
 from ...surface.mesh import Bools, Floats, Ints, sum_by
 from ...surface.ties import first_largest
-from .arc_tree import ArcTree
-from .necks import LEAST_HEIGHT
+from .arc_measures import LEAST_HEIGHT, ArcMeasures
+from .arc_tree import ALWAYS, NO_ARC, ArcTree
 
 # An inner part is worth keeping if its border is a neck: shorter than this fraction of the longest level sets on its
 # two sides (their geometric mean).
 NECK = 0.81
 # And if it has at least this fraction of the area of the whole.
 LEAST_AREA = 0.05
-# A feature is worth a part if it stands out: the least length²/area of its level sets is below this, area being what
+# A feature is worth a part if its roundness is below this: the least length²/area of its level sets, area being what
 # they cut off, its tip left out. A hemisphere has 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
 BLUNT = 4.4
-# Beyond the default level, who asks for more features gets all that stand out more than a hemisphere.
+# Beyond the default level, who asks for more features gets all whose roundness is less than that of a hemisphere.
 HEMISPHERE = 2 * np.pi
 
 
-def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> Bools:
-    """Tell which arcs (A,) end a part when all levels up to this one are overlaid.
+def nested_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: int, default_level: int) -> Bools:
+    """Mask (A,) of the arcs that end a part when all levels up to ``level`` are overlaid.
 
     Up to the default level every feature is cut off unless it is blunt, and so is what lies between two of its saddles
     (the torso between arms and legs), unless it is a thin shell or no neck shows where it ends. Beyond the default
@@ -29,33 +29,35 @@ def nested_cuts(tree: ArcTree, level: int, default_level: int, area: Floats) -> 
     Parameters
     ----------
     tree : ArcTree
+    measures : ArcMeasures
+        Of its arcs.
+    area : (A,) float64
+        Share of each arc in the area of its shell.
     level : int
     default_level : int
         Of the hierarchy.
-    area : (A,) float64
-        Share of each arc in the area of its shell.
     """
-    is_cut = _worthy_cuts(tree, tree.is_cut(min(level, default_level)) & ~tree.is_shell, area)
+    is_cut = _worthy_cuts(tree, measures, area, tree.is_cut(min(level, default_level)) & ~tree.is_shell)
     is_finer = tree.is_cut(level) & (tree.closing >= default_level)
     was_feature = tree.least_closing_inside > tree.closing
-    return is_cut | tree.is_shell | (is_finer & was_feature & (tree.roundness < HEMISPHERE))
+    return is_cut | tree.is_shell | (is_finer & was_feature & (measures.roundness < HEMISPHERE))
 
 
 def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
     """Return the number (A,) of the part that is cut off at each arc, 0 where nothing is.
 
-    The outermost on the way of a leaf has the leaf's number, so that an arm stays the same part when its fingers
+    The outermost on the path from a leaf has the leaf's number, so that an arm stays the same part when its fingers
     appear; the others have numbers of their own, beyond those of the leaves.
     """
     # Numbers of leaves are followed by those of inner parts between maxima, then between minima, then of saddles that
     # survive always.
     first = 1 + tree.n_roots + tree.n_features * (1 if tree.is_of_maxima else 2)
+    own = np.where(tree.closing == ALWAYS, first_own_part(tree) + np.arange(len(is_cut)), first + tree.closing)
     number = np.zeros(len(is_cut), dtype=np.int64)
     seen: set[int] = set()
     for arc in np.flatnonzero(is_cut)[::-1].tolist():
-        part, closing = int(tree.part[arc]), int(tree.closing[arc])
-        inner = first + closing if closing >= 0 else first_own_part(tree) + arc
-        number[arc] = inner if part in seen else part
+        part = int(tree.part[arc])
+        number[arc] = own[arc] if part in seen else part
         seen.add(part)
     return number
 
@@ -70,16 +72,16 @@ def number_behind(n_roots: int, n_features: int) -> int:
     return 1 + n_roots + 3 * n_features
 
 
-def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
-    """Tell which of the cut arcs (A,) end something that is worth a part."""
+def _worthy_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, candidates: Bools) -> Bools:
+    """Mask (A,) of the cut arcs that end something that is worth a part."""
     is_cut = candidates.copy()
-    height, longest, inside = tree.height.copy(), tree.longest.copy(), area.copy()
-    border = tree.closing_length.copy()
+    height, longest, inside = measures.height.copy(), measures.longest.copy(), area.copy()
+    border = measures.closing_length.copy()
     has_cut_inside = np.zeros(len(area), dtype=bool)
     last: dict[int, int] = {}
     for parent, meeting in _meeting_arcs(tree.parent):
         for arc in meeting:
-            # What has gathered on the way from the last cut.
+            # What has gathered on the path from the last cut.
             previous = last.get(int(tree.part[arc]))
             if previous is not None and not is_cut[previous]:
                 height[arc] += height[previous]
@@ -93,22 +95,22 @@ def _worthy_cuts(tree: ArcTree, candidates: Bools, area: Floats) -> Bools:
                 is_neck = _narrowing(border, longest, arc, meeting) < NECK
                 is_cut[arc] = is_neck and height[arc] > LEAST_HEIGHT and inside[arc] > LEAST_AREA
             else:
-                is_cut[arc] = tree.roundness[arc] < BLUNT
+                is_cut[arc] = measures.roundness[arc] < BLUNT
         has_cut_inside[parent] = (has_cut_inside | is_cut)[meeting].any()
     return _with_a_body(tree, is_cut, is_cut & has_cut_inside, area)
 
 
 def _meeting_arcs(parent: Ints) -> list[tuple[int, list[int]]]:
-    """Return for each arc that others end at which these are; whatever is inside comes before."""
+    """Return each arc that others end at, with these; whatever is inside comes before."""
     meeting: dict[int, list[int]] = {}
     for arc, end in enumerate(parent.tolist()):
-        if end >= 0:
+        if end != NO_ARC:
             meeting.setdefault(end, []).append(arc)
     return sorted(meeting.items())
 
 
 def _narrowing(border: Floats, longest: Floats, arc: int, meeting: list[int]) -> float:
-    """Return how narrow the shape is where an arc meets others, seen from both sides: the mean, 1 for a cylinder."""
+    """Return the border of an arc where it meets others over the longest level sets on both sides; 1 for a cylinder."""
     shares = {other: border[other] / longest[other] if border[other] else 1.0 for other in meeting}
     beyond = min((share for other, share in shares.items() if other != arc), default=1.0)
     return float(np.sqrt(shares[arc] * beyond))

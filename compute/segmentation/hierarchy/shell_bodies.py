@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...surface.mesh import Ints
-from .arc_tree import NEVER, ArcTree
+from .arc_tree import ALWAYS, NEVER, NO_ARC, NO_SADDLE, ArcTree
 from .levels import Hierarchy
 
 
@@ -29,26 +29,20 @@ def with_bodies(hierarchy: Hierarchy, shell_of_vertex: Ints) -> Hierarchy:
 
 def _with_bodies(tree: ArcTree, shell: Ints) -> ArcTree:
     """Return one tree, given the shell (A,) of each arc."""
-    roots = np.flatnonzero(tree.parent < 0)
+    roots = np.flatnonzero(tree.is_root)
     roots = roots[np.argsort(shell[roots])]
     n_arcs, n_more = len(tree.parent), len(roots) - 1
     whole, root = n_arcs + np.arange(n_more), n_arcs + n_more
-    parent = np.concatenate([tree.parent, np.full(n_more, root), [-1]])
+    parent = np.concatenate([tree.parent, np.full(n_more, root), [NO_ARC]])
     parent[roots] = [root, *whole]
     part = np.where(tree.part > tree.n_roots, tree.part + n_more, tree.part)
     bodies = tree.n_roots + 1 + np.arange(n_more)
-    none, nothing = np.full(n_more + 1, -1), np.zeros(n_more + 1)
     return replace(
         tree,
         n_roots=tree.n_roots + n_more,
         parent=parent,
         part=np.concatenate([part, bodies, part[roots[:1]]]),
         extremum=np.concatenate([tree.extremum, tree.extremum[roots[1:]], tree.extremum[roots[:1]]]),
-        saddle=np.concatenate([tree.saddle, none]),
-        # The saddle of no pair closes them, so they survive always.
-        closing=np.concatenate([tree.closing, none[1:], [NEVER]]),
-        height=np.concatenate([tree.height, nothing]),
-        closing_length=np.concatenate([tree.closing_length, nothing]),
-        longest=np.concatenate([tree.longest, nothing]),
-        roundness=np.concatenate([tree.roundness, nothing]),
+        saddle=np.concatenate([tree.saddle, np.full(n_more + 1, NO_SADDLE)]),
+        closing=np.concatenate([tree.closing, np.full(n_more, ALWAYS), [NEVER]]),
     )

@@ -9,15 +9,13 @@ from numpy.typing import NDArray
 
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
-from ...surface.ties import ROUNDING
 from ..borders.level_set_borders import Polyline
 from ..edits.corrections import LEVEL, Corrections, Labelling, corrected
 from ..faces.branches import Branches, repaired_labels
-from ..faces.level_cuts import cut_arcs
-from ..hierarchy.levels import Hierarchy
+from ..faces.part_tree import PartTree
+from ..modes import MODES, NESTED
 
 BODY = 0
-MODES = ("features", "nested")
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +68,9 @@ class BranchLabels:
     warnings: tuple[str, ...] = ()
     resting: tuple[int, ...] = ()
 
-    def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
-        """Return the label of each face from its branch."""
-        return self.of_branch.astype(np.int32)[branches[0].of_face]
+    def of_faces(self, part_tree: PartTree) -> NDArray[np.int32]:
+        """Return the label (F,) of each face from its branch."""
+        return self.of_branch.astype(np.int32)[part_tree.branches[0].of_face]
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,30 +113,27 @@ class Segmentation:
 
 
 def label_branches(
-    hierarchy: Hierarchy,
-    branches: tuple[Branches, ...],
+    part_tree: PartTree,
     *,
     level: int | None = None,
     threshold: float | None = None,
     n_parts: int | None = None,
-    mode: str = "features",
+    mode: str = NESTED,
     corrections: Corrections | None = None,
 ) -> BranchLabels:
     """Label the branches at one level.
 
     Parameters
     ----------
-    hierarchy : Hierarchy
-    branches : tuple of Branches
-        One for each tree of the hierarchy.
+    part_tree : PartTree
     level : int, optional
-        From 0 (all is body) to ``hierarchy.n_levels - 1``.
+        From 0 (all is body) to ``hierarchy.n_levels - 1``; the default level if none of the three is given.
     threshold : float, optional
         Least persistence of a part, as a fraction of the field's range.
     n_parts : int, optional
         Number of labels, the body included; where it cannot be reached, the largest below it.
-    mode : "features" or "nested"
-        Only the features, or also what lies between them when all levels up to this one are overlaid.
+    mode : "nested" or "features"
+        The features and what lies between them when all levels up to this one are overlaid, or the features alone.
     corrections : Corrections, optional
         Changes made by hand; they refer to these branches.
 
@@ -151,7 +146,7 @@ def label_branches(
         raise LevelError(f'The mode is "features" or "nested", not "{mode}".')
     if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
         raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
-    at_level = partial(_at_level, hierarchy, branches, mode, corrections or Corrections())
+    hierarchy, at_level = part_tree.hierarchy, partial(_at_level, part_tree, mode, corrections or Corrections())
     if n_parts is not None:
         return _reach_number(at_level, hierarchy.n_levels, n_parts)
     if level is None:
@@ -159,29 +154,22 @@ def label_branches(
     return at_level(hierarchy.checked_level(level))
 
 
-def _at_level(
-    hierarchy: Hierarchy, branches: tuple[Branches, ...], mode: str, corrections: Corrections, level: int
-) -> BranchLabels:
-    cuts = cut_arcs(hierarchy, branches, level, mode, corrections.branch_levels)
-    return label_behind(cuts, hierarchy, branches, level, corrections)
+def _at_level(part_tree: PartTree, mode: str, corrections: Corrections, level: int) -> BranchLabels:
+    cuts = part_tree.cut_arcs(level, mode, corrections.branch_levels)
+    return label_behind(cuts, part_tree, level, corrections)
 
 
 def label_behind(
-    cuts: list[Ints],
-    hierarchy: Hierarchy,
-    branches: tuple[Branches, ...],
-    level: int,
-    corrections: Corrections | None = None,
+    cuts: list[Ints], part_tree: PartTree, level: int, corrections: Corrections | None = None
 ) -> BranchLabels:
     """Label all branches by the part that is cut off next to them, as given for each arc of each tree."""
     corrections = corrections or Corrections()
-    origins = _origins(hierarchy, cuts)
-    bodies = tuple(np.unique(hierarchy.trees[0].body).tolist())
-    of_branch = repaired_labels(_overlaid(cuts, hierarchy, branches), branches[0], bodies)
+    origins, branches, bodies = _origins(part_tree, cuts), part_tree.branches[0], part_tree.bodies
+    of_branch = repaired_labels(part_tree.labels_of_branches(cuts), branches, bodies)
     labelling = Labelling(of_branch, origins.parent, _resting_levels(cuts, corrections), bodies)
     if corrections.items:
-        labelling = corrected(labelling, branches[0], corrections)
-    parts = _tabulate(labelling, origins, branches[0])
+        labelling = corrected(labelling, branches, corrections)
+    parts = _tabulate(labelling, origins, branches)
     return BranchLabels(level, labelling.of_branch, parts, resting=labelling.resting)
 
 
@@ -189,18 +177,6 @@ def _resting_levels(cuts: list[Ints], corrections: Corrections) -> tuple[int, ..
     """Return the places of the levels of branches whose part is not cut off."""
     present = set(np.concatenate(cuts).tolist())
     return tuple(row for row, item in enumerate(corrections.items) if item.kind == LEVEL and item.part not in present)
-
-
-def _overlaid(cuts: list[Ints], hierarchy: Hierarchy, branches: tuple[Branches, ...]) -> Ints:
-    """Return the label of each branch; where parts of maxima and of minima overlap, the smaller one lies on top."""
-    body = hierarchy.trees[0].body[branches[0].arc]
-    overlaid, size = body, np.full(len(body), np.inf)
-    for tree, pieces, cut in zip(hierarchy.trees, branches, cuts, strict=True):
-        label = tree.spread(cut)[pieces.arc]
-        area = sum_by(label, pieces.area)[label]
-        is_on_top = (label > BODY) & (label != body) & (area < (1 - ROUNDING) * size)
-        overlaid, size = np.where(is_on_top, label, overlaid), np.where(is_on_top, area, size)
-    return overlaid
 
 
 def _reach_number(at_level: Callable[[int], BranchLabels], n_levels: int, n_parts: int) -> BranchLabels:
@@ -229,10 +205,10 @@ class _Origins:
     saddle: Ints
 
 
-def _origins(hierarchy: Hierarchy, cuts: list[Ints]) -> _Origins:
+def _origins(part_tree: PartTree, cuts: list[Ints]) -> _Origins:
     n = 1 + max(int(cut.max(initial=0)) for cut in cuts)
     parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
-    for tree, cut in zip(hierarchy.trees, cuts, strict=True):
+    for tree, cut in zip(part_tree.trees, cuts, strict=True):
         arcs = np.flatnonzero(cut > BODY)
         extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
         parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
@@ -245,4 +221,11 @@ def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Part
     ids = np.flatnonzero(n_faces > 0)
     n_new = max(0, len(labelling.parent) - len(origins.saddle))
     extremum, saddle = (np.pad(column, (0, n_new), constant_values=-1) for column in (origins.extremum, origins.saddle))
-    return Parts(ids, labelling.parent[ids], extremum[ids], saddle[ids], area[ids], n_faces[ids])
+    return Parts(
+        id=ids,
+        parent=labelling.parent[ids],
+        extremum=extremum[ids],
+        saddle=saddle[ids],
+        area=area[ids],
+        n_triangles=n_faces[ids],
+    )

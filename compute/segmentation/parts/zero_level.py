@@ -30,8 +30,14 @@ def divide_at_zero(field: ScalarField, mesh: TriangleMesh, surface: Surface) -> 
     count = np.bincount(labels)
     ids = np.arange(1, len(count))
     tip = _extrema(field, labels[surface.input_triangle], ids)
-    none = np.full(len(ids), -1)
-    parts = Parts(ids, np.zeros_like(ids), tip, none, sum_by(labels, mesh.areas)[1:], count[1:])
+    parts = Parts(
+        id=ids,
+        parent=np.zeros_like(ids),
+        extremum=tip,
+        saddle=np.full(len(ids), -1),
+        area=sum_by(labels, mesh.areas)[1:],
+        n_triangles=count[1:],
+    )
     trace = partial(_zero_lines, field, mesh, surface, labels)
     return Segmentation(labels.astype(np.int32), parts, 0, _trace=trace)
 
@@ -47,7 +53,7 @@ def _zero_lines(field: ScalarField, mesh: TriangleMesh, surface: Surface, labels
 
 
 def _hills(field: ScalarField, label_of_surface: Ints) -> tuple[Ints, Ints]:
-    """Return for each vertex of the net which piece above zero it is on, and the part that each piece lies in.
+    """Return for each vertex of the net the piece above zero that it is on, and the part that each piece lies in.
 
     Vertices below zero get the number behind the last piece; pieces too small for a face have no part.
     """
@@ -73,7 +79,7 @@ def _hills(field: ScalarField, label_of_surface: Ints) -> tuple[Ints, Ints]:
 
 
 def _is_negative(field: ScalarField, surface: Surface, n_triangles: int) -> Bools:
-    """Tell (T,) whether the greater half of each triangle of the input is below zero."""
+    """Mask (T,) of the triangles of the input whose greater half is below zero."""
     heights = np.sort(field.values[field.net.triangles], axis=1)
     signed = field.net.areas * (2 * share_below(heights, np.zeros(len(heights))) - 1)
     triangle = surface.input_triangle[field.net.triangle_of_surface]

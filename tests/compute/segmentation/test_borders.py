@@ -7,7 +7,6 @@ import pytest
 
 from compute import LevelError, TriangleMesh, analyze, zero_level
 from compute.segmentation.borders.level_set_borders import cross_edges
-from compute.segmentation.faces.level_cuts import cut_arcs
 from tests.shapes import icosphere, rectangle, star, torus
 
 
@@ -19,16 +18,17 @@ def tilted_star():
 
 
 def crossings_at(analysis, level, mode="features"):
-    cuts = cut_arcs(analysis.hierarchy, analysis.branches(), level, mode)
-    return cross_edges(analysis.profile(), analysis.hierarchy.trees, analysis.closing_heights, cuts)
+    part_tree = analysis.part_tree()
+    cuts = part_tree.cut_arcs(level, mode)
+    return cross_edges(analysis.profile(), part_tree.trees, part_tree.closing_heights, cuts)
 
 
 def test_a_border_lies_at_the_height_of_its_saddle(tilted_star):
     mesh, heights = tilted_star
     analysis = analyze(mesh, field=heights)
-    parts = analysis.segment(level=3).parts
+    parts = analysis.segment(level=3, mode="features").parts
     level_of_part = dict(zip(parts.id.tolist(), heights[parts.saddle].tolist(), strict=True))
-    borders = analysis.borders(level=3)
+    borders = analysis.borders(level=3, mode="features")
     assert {border.part for border in borders} == set(parts.id.tolist()) - {0}
     for border in borders:
         np.testing.assert_allclose(border.points @ [0.3, 1.0, 0.05], level_of_part[border.part], atol=1e-12)
@@ -47,7 +47,7 @@ def test_a_part_of_a_torus_has_two_borders():
     mesh = torus(48, 24)
     x, y, _ = mesh.vertices.T
     analysis = analyze(mesh, field=np.abs(y) + 0.1 * (y > 0) + 1e-3 * x)
-    borders = [border for border in analysis.borders(level=1) if border.part == 1]
+    borders = [border for border in analysis.borders(level=1, mode="features") if border.part == 1]
     assert len(borders) == 2
 
 
@@ -69,7 +69,7 @@ def test_crossings_of_an_edge_are_in_order_and_the_last_arc_is_that_of_the_verte
     same_edge = np.diff(crossings.edge) == 0
     assert (np.diff(crossings.parameter)[same_edge] >= 0).all()
     assert ((crossings.parameter >= 0) & (crossings.parameter <= 1)).all()
-    cuts = cut_arcs(analysis.hierarchy, analysis.branches(), 3, "nested")
+    cuts = analysis.part_tree().cut_arcs(3, "nested")
     last = np.append(~same_edge, True)
     for number, tree in enumerate(analysis.hierarchy.trees):
         part = tree.spread(cuts[number])
@@ -79,7 +79,7 @@ def test_crossings_of_an_edge_are_in_order_and_the_last_arc_is_that_of_the_verte
 
 def test_a_segmentation_knows_its_borders(tilted_star):
     mesh, heights = tilted_star
-    segmentation = analyze(mesh, field=heights).segment(level=2)
+    segmentation = analyze(mesh, field=heights).segment(level=2, mode="features")
     assert {border.part for border in segmentation.borders} == set(segmentation.parts.id.tolist()) - {0}
 
 
@@ -106,7 +106,7 @@ def test_zero_lines_bound_the_parts_above_them():
 def test_a_part_that_is_divided_further_has_borders_inside():
     mesh = star(5, 3)
     analysis = analyze(mesh, field=mesh.vertices @ np.array([0.3, 1.0, 0.05]))
-    whole, finer = analysis.segment(level=2), analysis.segment(level=2, within=1)
+    whole, finer = (analysis.segment(level=2, mode="features", within=part) for part in (None, 1))
     assert len(finer.borders) >= len(whole.borders)
     # A part too small to have a face of its own still has a line around it.
     assert {line.part for line in finer.borders} >= set(finer.parts.id.tolist()) - {0}

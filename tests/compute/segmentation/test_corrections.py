@@ -19,7 +19,7 @@ from compute.segmentation.edits.corrections import (
     Labelling,
     corrected,
 )
-from compute.segmentation.edits.part_tracking import Divided, carried, renumbered
+from compute.segmentation.edits.part_tracking import carried, renumbered
 from compute.segmentation.edits.redrawing import redraw, undivided
 from compute.segmentation.edits.relief import relief_of
 from compute.segmentation.faces.branches import Branches
@@ -112,17 +112,16 @@ def redrawn(analysis, heights, items, level, painted=None):
     """Return the labels of the triangles with some corrections."""
     own = np.arange(len(analysis.mesh.triangles))
     graph = face_graph(analysis.mesh, analysis.surface, own)
-    divided = Divided(analysis.hierarchy, analysis.branches(), analysis.mesh.areas)
     painted = np.full(len(own), -1) if painted is None else painted
     relief = relief_of(analysis.surface, heights, own, graph.stands_for)
-    branches, corrections = redraw(divided, analysis.closing_heights, items, painted, relief, graph)
-    labels = label_branches(analysis.hierarchy, branches, level=level, corrections=corrections)
-    return labels.of_faces(branches), labels
+    part_tree, corrections = redraw(analysis.part_tree(), items, painted, relief, graph)
+    labels = label_branches(part_tree, level=level, mode="features", corrections=corrections)
+    return labels.of_faces(part_tree), labels
 
 
 def test_a_border_follows_the_level_it_is_moved_to(arms):
     analysis, heights = arms
-    before = analysis.segment()
+    before = analysis.segment(mode="features")
     move = Correction(MOVE, 2, value=-0.2, level=before.level, mode="features")
     moved, _ = redrawn(analysis, heights, (move,), before.level)
     saddle = before.parts.saddle[before.parts.id.tolist().index(2)]
@@ -133,7 +132,7 @@ def test_a_border_follows_the_level_it_is_moved_to(arms):
 
 def test_a_border_moved_outward_stops_where_the_next_hill_begins(arms):
     analysis, heights = arms
-    before = analysis.segment()
+    before = analysis.segment(mode="features")
     move = Correction(MOVE, 2, value=0.9, level=before.level, mode="features")
     moved, _ = redrawn(analysis, heights, (move,), before.level)
     for other in (1, 3, 4, 5):
@@ -161,17 +160,17 @@ def two_orders():
 def test_no_corrections_change_nothing(two_orders):
     analysis = two_orders[0]
     for level in range(analysis.hierarchy.n_levels):
-        plain = label_branches(analysis.hierarchy, analysis.branches(), level=level, mode="nested")
-        none = undivided(analysis.branches(), ())
-        same = label_branches(analysis.hierarchy, analysis.branches(), level=level, mode="nested", corrections=none)
+        plain = label_branches(analysis.part_tree(), level=level, mode="nested")
+        none = undivided(analysis.part_tree(), ())
+        same = label_branches(analysis.part_tree(), level=level, mode="nested", corrections=none)
         np.testing.assert_array_equal(plain.of_branch, same.of_branch)
 
 
 def test_parts_are_found_again_in_another_analysis(two_orders):
-    old, new = (Divided(a.hierarchy, a.branches(), a.mesh.areas) for a in two_orders)
+    old, new = (analysis.part_tree() for analysis in two_orders)
     labels = [a.segment(mode="nested") for a in two_orders]
     items = tuple(Correction(LEVEL, part, value=3.0, level=labels[0].level) for part in labels[0].parts.id[1:].tolist())
-    found = carried(items, old, new)
+    found = carried(items, old, new, two_orders[0].mesh.areas)
     for item, again in zip(items, renumbered(items, found, old.hierarchy, new.hierarchy), strict=True):
         both = (labels[0].labels == item.part) & (labels[1].labels == again.part)
         assert both.sum() > 0.9 * (labels[0].labels == item.part).sum()
@@ -179,9 +178,8 @@ def test_parts_are_found_again_in_another_analysis(two_orders):
 
 
 def test_a_part_that_is_not_there_any_more_is_not_found(two_orders):
-    old, _ = (Divided(a.hierarchy, a.branches(), a.mesh.areas) for a in two_orders)
-    mesh = two_orders[0].mesh
+    old, mesh = two_orders[0].part_tree(), two_orders[0].mesh
     flat = analyze(TriangleMesh(mesh.vertices, mesh.triangles), field=np.ones(len(mesh.vertices)))
-    new = Divided(flat.hierarchy, flat.branches(), mesh.areas)
+    new = flat.part_tree()
     items = (Correction(LEVEL, 2, value=3.0, level=old.hierarchy.default_level),)
-    assert renumbered(items, carried(items, old, new), old.hierarchy, new.hierarchy) == ()
+    assert renumbered(items, carried(items, old, new, mesh.areas), old.hierarchy, new.hierarchy) == ()

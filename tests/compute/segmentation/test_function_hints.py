@@ -29,7 +29,7 @@ def test_the_count_is_that_of_the_division_itself(hints):
     mesh = star(5, 3)
     for hint in hints[:2]:
         analysis = analyze(mesh, field=hint.number, order=2)
-        assert abs(len(analysis.segment().parts) - 1 - hint.n_parts) <= 1
+        assert abs(len(analysis.segment(mode="features").parts) - 1 - hint.n_parts) <= 1
 
 
 def test_the_first_function_of_a_stick_has_no_saddle_and_the_second_holds_both_ends():

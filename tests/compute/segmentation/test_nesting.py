@@ -51,7 +51,7 @@ def test_a_blunt_end_is_no_nested_part():
     capsule = icosphere(4).vertices * [1, 1, 1] + np.sign(icosphere(4).vertices[:, 2:]) * [0, 0, 0.2]
     analysis = analyze(type(star())(capsule, icosphere(4).triangles))
     level = analysis.hierarchy.n_levels - 1
-    assert analysis.segment(level=level).n_parts >= 3
+    assert analysis.segment(level=level, mode="features").n_parts >= 3
     assert analysis.segment(level=level, mode="nested").n_parts == 1
 
 
@@ -78,14 +78,14 @@ def test_refuses_an_unknown_mode():
 
 def arm_of(person):
     """Return the label of the part that reaches furthest to the left."""
-    segmentation = person.segment()
+    segmentation = person.segment(mode="features")
     tips = person.net.positions[segmentation.parts.extremum[1:]]
     return int(segmentation.parts.id[1:][np.argmax(tips[:, 0])])
 
 
 def test_an_arm_on_its_own_has_five_fingers(person):
     arm = arm_of(person)
-    coarse, fine = person.segment(), person.segment(within=arm)
+    coarse, fine = person.segment(mode="features"), person.segment(within=arm, mode="features")
     assert (fine.parts.parent == arm).sum() == 5
     np.testing.assert_array_equal(fine.labels[coarse.labels != arm], coarse.labels[coarse.labels != arm])
     tips = person.net.positions[fine.parts.extremum[fine.parts.parent == arm]]
@@ -93,7 +93,7 @@ def test_an_arm_on_its_own_has_five_fingers(person):
 
 
 def test_the_table_of_a_part_that_was_divided_fits_the_labels(person):
-    fine = person.segment(within=arm_of(person))
+    fine = person.segment(within=arm_of(person), mode="features")
     area = np.bincount(fine.labels, person.mesh.areas)
     np.testing.assert_allclose(fine.parts.area, area[fine.parts.id])
     np.testing.assert_array_equal(fine.parts.n_triangles, np.bincount(fine.labels)[fine.parts.id])

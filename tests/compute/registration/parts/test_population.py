@@ -49,7 +49,7 @@ def test_another_triangulation_gets_the_same_parts(ball, finer):
 
 
 def test_the_reference_keeps_its_parts(ball, finer):
-    expected = finer.segment(level=2)
+    expected = finer.segment(level=2, mode="features")
     _, reference = register([ball, finer], reference=1, level=2)
     np.testing.assert_array_equal(reference.labels, expected.labels)
 

@@ -5,7 +5,7 @@ import pytest
 
 from compute.analysis import analyze
 from compute.errors import Cancelled
-from compute.registration.paper.diagrams_matching import PartPairs, match_diagrams, match_tips
+from compute.registration.paper.diagram_matching import PartPairs, match_diagrams, match_tips
 from compute.registration.paper.subpart_matching import match_subparts
 from tests.compute.registration.shapes import lumpy_ball, moved, shuffled
 

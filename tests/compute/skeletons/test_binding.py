@@ -57,7 +57,7 @@ def test_the_tip_of_a_limb_follows_its_last_bone_alone(bound):
 
 
 def test_a_reflected_character_has_a_left_and_a_right_side(human, human_analysis):
-    labels = human_analysis.segment().labels
+    labels = human_analysis.segment(mode="features").labels
     partner = mirror_parts(human_analysis, labels)
     side = sides(skeleton(human_analysis, partner=partner), partner)
     x = np.array([human.vertices[human.triangles[labels == part], 0].mean() for part in range(len(side))])
@@ -69,7 +69,7 @@ def test_matching_finds_the_sides_of_a_pose_that_is_not_symmetric(human):
     from compute import TriangleMesh, analyze
 
     analysis = analyze(TriangleMesh(human.mesh_in_pose("walk"), human.triangles), order=1)
-    labels = analysis.segment().labels
+    labels = analysis.segment(mode="features").labels
     partner = mirror_parts(analysis, labels)
     x = [human.vertices[human.triangles[labels == part], 0].mean() for part in range(1, labels.max() + 1)]
     for part, place in enumerate(x, start=1):
@@ -78,7 +78,7 @@ def test_matching_finds_the_sides_of_a_pose_that_is_not_symmetric(human):
 
 
 def test_mirrored_limbs_have_joints_at_mirrored_places(human_analysis):
-    partner = mirror_parts(human_analysis, human_analysis.segment().labels)
+    partner = mirror_parts(human_analysis, human_analysis.segment(mode="features").labels)
     found = skeleton(human_analysis, n_pieces=2, partner=partner)
     for part, other in enumerate(partner):
         if part < other:

@@ -1,4 +1,4 @@
-"""From matched functions to matched points."""
+"""From matched functions to a map of points, from each point of the target to one of the source."""
 
 import numpy as np
 
@@ -13,25 +13,23 @@ DENSE_SIZES = (50, 60, 72, 86, 100)
 DENSE_SAMPLES = 3000
 
 
-def source_points(
-    source: SpectralShape, target: SpectralShape, matching: Matching, progress: Progress = silent
-) -> Ints:
-    """Return (n,) for each point of the target the point of the source that it corresponds to.
+def point_map(source: SpectralShape, target: SpectralShape, matching: Matching, progress: Progress = silent) -> Ints:
+    """Return (n,) the point of the source that each point of the target corresponds to.
 
     The map keeps to the source's `DENSE_SAMPLES` farthest points, or corresponds by number for shapes of one topology.
     """
     if matching.same_topology:
         return np.arange(len(target.positions))
     samples = farthest_points(source.positions, DENSE_SAMPLES)
-    grown = dense_map(source, target, matching, samples, section(progress, 0, 0.7))
-    landing = section(progress, 0.7, 1)
-    return samples[nearest_points(grown, source.functions[samples], target.functions, landing)]
+    functional_map = refined_functional_map(source, target, matching, samples, section(progress, 0, 0.7))
+    rest = section(progress, 0.7, 1)
+    return samples[nearest_points(functional_map, source.functions[samples], target.functions, rest)]
 
 
-def dense_map(
+def refined_functional_map(
     source: SpectralShape, target: SpectralShape, matching: Matching, samples: Ints, progress: Progress = silent
 ) -> Floats:
-    """Return (k, k) the functional map of a matching, grown to all functions, the constant included.
+    """Return (k, k) the functional map of a matching, target x source, grown to all functions, the constant included.
 
     Parameters
     ----------
@@ -43,6 +41,6 @@ def dense_map(
     available = min(source.n_functions, target.n_functions)
     sizes = [min(size, available) for size in DENSE_SIZES]
     target_samples = farthest_points(target.positions, DENSE_SAMPLES)
-    here = sample_functions(source.functions[samples], ())
-    there = sample_functions(target.functions[target_samples], sizes)
-    return zoom_out(with_constant(matching.map), here, there, sizes, progress=progress)
+    source_functions = sample_functions(source.functions[samples], ())
+    target_functions = sample_functions(target.functions[target_samples], sizes)
+    return zoom_out(with_constant(matching.map), source_functions, target_functions, sizes, progress=progress)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from compute import EngineError, MeshError, RegistrationError, TriangleMesh, analyze, match, skeleton, zero_level
+from compute.surface.bridging import bridge_shells, large_shells
 from compute.surface.cleaning import bridged_surface, clean_surface
 from tests.shapes import icosphere, joined, rectangle, star, torus
 
@@ -118,7 +119,7 @@ def test_values_of_ones_own_count_on_each_shell_by_themselves():
 
 def test_eyes_take_the_part_of_what_they_lie_on():
     analysis = analyze(TOGETHER, order=1, shells="separate")
-    first, _, eye_on_body, eye_on_arm = np.split(analysis.segment().labels, ENDS)
+    first, _, eye_on_body, eye_on_arm = np.split(analysis.segment(mode="features").labels, ENDS)
     body = analysis.segment(level=0).labels[ENDS[0]]
     assert set(eye_on_body.tolist()) == {body}
     centres = np.linalg.norm(CHARACTERS[0].vertices[CHARACTERS[0].triangles].mean(axis=1) - [2.4, 0, 0.15], axis=1)
@@ -195,3 +196,18 @@ def test_the_zero_level_is_that_of_the_largest_shell():
     first, second = np.split(zero_level(analyze(joined(*CHARACTERS), order=1, shells="separate")).labels, ENDS[:1])
     assert divide_alike(first, zero_level(analyze(CHARACTERS[0], order=1)).labels)
     assert len(set(second.tolist())) == 1
+
+
+def test_a_bridge_has_one_corner_on_one_shell_and_two_on_the_next():
+    mesh = chain(gap=0.02)
+    bridges = bridge_shells(mesh)
+    shell = np.repeat(np.arange(4), len(mesh.vertices) // 4)[bridges.triangles]
+    assert bridges.is_joined.all()
+    assert len(shell) > 0
+    assert (shell[:, 1] == shell[:, 2]).all()
+    assert (np.abs(shell[:, 0] - shell[:, 1]) == 1).all()
+
+
+def test_shells_of_little_area_are_details():
+    mesh = joined(joined(icosphere(2), ball([3, 0, 0], 0.05, 1)), ball([5, 0, 0], 0.07, 1))
+    assert large_shells(mesh).tolist() == [True, True, False]

@@ -1,4 +1,7 @@
-"""The same faces under other numbers: from one triangle that is known, all others follow across their edges."""
+"""Isomorphism of triangle meshes: the same faces under other numbers.
+
+From one triangle that is known, all others follow across their edges.
+"""
 
 from dataclasses import dataclass
 
@@ -6,7 +9,7 @@ import numpy as np
 
 from ...surface.mesh import Bools, Ints
 
-# How many first triangles are tried.
+# First triangles that are tried.
 MOST_SEEDS = 20
 
 
@@ -33,13 +36,13 @@ class _Sides:
         return np.where(self.keys[place] == wanted, self.opposite[place], -1)
 
 
-def may_be_renumbered(source: Ints, target: Ints) -> bool:
-    """Whether triangles are as many, around vertices of the same valences, so that a closer look is worth it."""
+def may_be_isomorphic(source: Ints, target: Ints) -> bool:
+    """Whether there are as many triangles around vertices of the same valences, so that a closer look is worth it."""
     return len(source) == len(target) and _valences(source) == _valences(target)
 
 
-def renumbering(source: Ints, target: Ints, n_source: int, n_target: int, guess: Ints) -> Ints | None:
-    """Return for each target vertex the source vertex that it is under another number; None if the faces differ.
+def isomorphism(source: Ints, target: Ints, n_source: int, n_target: int, guess: Ints) -> Ints | None:
+    """Return the source vertex that each target vertex is under another number; None if the faces differ.
 
     Parameters
     ----------
@@ -55,21 +58,21 @@ def renumbering(source: Ints, target: Ints, n_source: int, n_target: int, guess:
     (n_target,) int64 or None
         -1 for vertices without triangles.
     """
-    here, there = _sides(source, n_source), _sides(target, n_target)
-    if here is None or there is None:
+    source_sides, target_sides = _sides(source, n_source), _sides(target, n_target)
+    if source_sides is None or target_sides is None:
         return None
     corners = guess[target]
-    fits = np.flatnonzero(here.find(corners[:, 0], corners[:, 1]) == corners[:, 2])
+    fits = np.flatnonzero(source_sides.find(corners[:, 0], corners[:, 1]) == corners[:, 2])
     # Spread over the surface, as the guess is wrong in whole regions.
     for seed in fits[:: max(1, len(fits) // MOST_SEEDS)].tolist():
-        image = _grown(here, there, target[seed], guess[target[seed]])
+        image = _grown(source_sides, target_sides, target[seed], guess[target[seed]])
         if image is not None and _is_complete(image, source, target):
             return image
     return None
 
 
 def _valences(triangles: Ints) -> bytes:
-    """Return how many vertices there are of each valence."""
+    """Return the number of vertices of each valence."""
     counts = np.bincount(triangles.ravel())
     return np.bincount(counts[counts > 0]).tobytes()
 
@@ -93,16 +96,16 @@ def _grown(source: _Sides, target: _Sides, seed: Ints, start: Ints) -> Ints | No
     while len(front):
         tails, heads = front.T
         third = target.find(tails, heads)
-        there = source.find(image[tails], image[heads])
-        if ((third < 0) != (there < 0)).any():
+        third_image = source.find(image[tails], image[heads])
+        if ((third < 0) != (third_image < 0)).any():
             return None
         inside = third >= 0
-        tails, heads, third, there = tails[inside], heads[inside], third[inside], there[inside]
+        tails, heads, third, third_image = tails[inside], heads[inside], third[inside], third_image[inside]
         known = image[third]
-        if ((known >= 0) & (known != there)).any():
+        if ((known >= 0) & (known != third_image)).any():
             return None
-        image[third] = there
-        if (image[third] != there).any():
+        image[third] = third_image
+        if (image[third] != third_image).any():
             return None
         # Behind the two other sides of each triangle lie the next ones.
         front = np.concatenate([np.stack([third, heads], axis=1), np.stack([tails, third], axis=1)])
@@ -111,7 +114,7 @@ def _grown(source: _Sides, target: _Sides, seed: Ints, start: Ints) -> Ints | No
 
 
 def _first_time(reached: Bools, target: _Sides, front: Ints) -> Ints:
-    """Return which of the sides were not passed before, each once, and mark them."""
+    """Return the rows of the sides that were not passed before, each once, and mark them."""
     place = np.searchsorted(target.keys, front[:, 0] * target.n_vertices + front[:, 1])
     place = np.minimum(place, len(target.keys) - 1)
     place, first = np.unique(place, return_index=True)

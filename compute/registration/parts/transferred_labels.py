@@ -1,4 +1,4 @@
-"""The parts of a reference on another shape: carried over point by point, with the borders that the reference has."""
+"""The parts of a reference on another shape: transferred point by point, with the borders that the reference has."""
 
 from dataclasses import dataclass
 
@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from ...analysis import Analysis
-from ...segmentation.faces.branches import Branches, connected_branches, repaired_labels
+from ...segmentation.faces.branches import connected_branches, repaired_labels
 from ...segmentation.faces.face_graph import FaceGraph, face_graph
-from ...segmentation.hierarchy.levels import Hierarchy
+from ...segmentation.faces.part_tree import PartTree
 from ...segmentation.parts.part_labels import BODY, BranchLabels, Parts, label_behind
 from ...surface.cleaning import Surface
 from ...surface.heat_smoothing import smoothed
@@ -17,7 +17,7 @@ from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, sum_by
 from ...surface.ties import first_largest
 from ..eigenfunctions.spectral_shape import SpectralShape
 
-# Borders are smoothed over this distance, in units of the root of the area: the points that a map lands on lie so far
+# Borders are smoothed over this distance, in units of the root of the area: the samples that a map leads to lie so far
 # apart.
 BORDER_WIDTH = 0.03
 
@@ -29,10 +29,14 @@ class FaceLabels:
     Attributes
     ----------
     level : int
+        Of the shape.
     faces : (F,) int32
     parts : Parts
+        Those of the labels.
     warnings : tuple of str
+        Sentences for the user.
     resting : tuple of int
+        Corrections that have no effect.
     """
 
     level: int
@@ -41,21 +45,20 @@ class FaceLabels:
     warnings: tuple[str, ...] = ()
     resting: tuple[int, ...] = ()
 
-    def of_faces(self, branches: tuple[Branches, ...]) -> NDArray[np.int32]:
+    def of_faces(self, part_tree: PartTree) -> NDArray[np.int32]:
         """Return the label of each face, whatever branch it is on."""
         return self.faces
 
 
 @dataclass(frozen=True, eq=False)
 class Divisible:
-    """What registration keeps of an analyzed shape; F faces.
+    """An analyzed shape in the form in which parts are transferred to and from it; F faces.
 
     Attributes
     ----------
     surface : Surface
     shape : SpectralShape
-    hierarchy : Hierarchy
-    branches : tuple of Branches
+    part_tree : PartTree
         Of the faces.
     graph : FaceGraph
     face : (m,) int64
@@ -64,19 +67,18 @@ class Divisible:
 
     surface: Surface
     shape: SpectralShape
-    hierarchy: Hierarchy
-    branches: tuple[Branches, ...]
+    part_tree: PartTree
     graph: FaceGraph
     face: Ints
 
     def shares_at_points(self, labels: Ints, n_labels: int) -> Floats:
-        """Return (n, n_labels) which share of the area around each point has each label (F,)."""
+        """Return (n, n_labels) the share of the area around each point that has each label (F,)."""
         shares = self.shape.shares_at_points(labels[self.face], n_labels).toarray()
         return np.asarray(shares / np.maximum(self.shape.point_areas, np.finfo(float).tiny)[:, None])
 
 
 def divisible(analysis: Analysis, shape: SpectralShape, face_of_triangle: Ints | None = None) -> Divisible:
-    """Return what registration keeps of an analysis.
+    """Return an analyzed shape in the form in which parts are transferred to and from it.
 
     Parameters
     ----------
@@ -86,17 +88,17 @@ def divisible(analysis: Analysis, shape: SpectralShape, face_of_triangle: Ints |
     face_of_triangle : (T,) int64, optional
         The polygon each triangle of the input belongs to; the triangles themselves if None.
     """
-    branches = analysis.branches(face_of_triangle)
+    part_tree = analysis.part_tree(face_of_triangle)
     if face_of_triangle is None:
         face_of_triangle = np.arange(len(analysis.mesh.triangles))
     graph = face_graph(analysis.mesh, analysis.surface, face_of_triangle)
     face = face_of_triangle[shape.input_triangle]
-    return Divisible(analysis.surface, shape, analysis.hierarchy, branches, graph, face)
+    return Divisible(surface=analysis.surface, shape=shape, part_tree=part_tree, graph=graph, face=face)
 
 
 @dataclass(frozen=True, eq=False)
 class GivenParts:
-    """The parts that are carried; P parts without the body.
+    """The parts that are transferred; P parts without the body.
 
     Attributes
     ----------
@@ -106,7 +108,7 @@ class GivenParts:
     is_drawn : (P,) bool
         Whether a part was made by hand: there is no feature that a target must have for it.
     shares : (n, 1 + P) float64
-        Which share of the area around each of the reference's points is body, and which each part.
+        Share of the area around each of the reference's points that is body, and that is each part.
     """
 
     labels: Ints
@@ -126,11 +128,17 @@ def given_parts(labels: Ints, parts: Parts, reference: Divisible) -> GivenParts:
     is_part = parts.id != BODY
     ids = parts.id[is_part]
     shares = reference.shares_at_points(labels.astype(np.int64), int(ids.max(initial=BODY)) + 1)
-    return GivenParts(labels, ids, parts.parent[is_part], parts.saddle[is_part] < 0, shares[:, np.append(BODY, ids)])
+    return GivenParts(
+        labels=labels,
+        id=ids,
+        parent=parts.parent[is_part],
+        is_drawn=parts.saddle[is_part] < 0,
+        shares=shares[:, np.append(BODY, ids)],
+    )
 
 
-def carry_labels(
-    given: GivenParts, target: Divisible, landing: Ints | None, cuts: list[Ints], level: int
+def transfer_labels(
+    given: GivenParts, target: Divisible, point_map: Ints | None, cuts: list[Ints], level: int
 ) -> FaceLabels:
     """Label the faces of a target.
 
@@ -138,28 +146,28 @@ def carry_labels(
     ----------
     given : GivenParts
     target : Divisible
-    landing : (n,) int64, optional
+    point_map : (n,) int64, optional
         The reference's point that each of the target's points corresponds to; None if the faces do by their numbers.
     cuts : list of (A,) int64
         For each tree of the target, the part that is cut off at each arc: parts of the reference, which are left out
-        if they are not among them, and others with higher numbers, which have the borders that are cut here.
+        if they are not among them, and others with higher numbers, which keep the borders of their arcs.
     level : int
-        The target's, for what is told of it.
+        The target's.
     """
-    by_arcs = label_behind(cuts, target.hierarchy, target.branches, level)
-    if landing is None:
-        return FaceLabels(level, given.labels.astype(np.int32), _counted(given, given.labels, by_arcs, target))
-    flat = by_arcs.of_faces(target.branches).astype(np.int64)
+    by_arcs = label_behind(cuts, target.part_tree, level)
+    if point_map is None:
+        return FaceLabels(level, given.labels.astype(np.int32), _table_of_parts(given, given.labels, by_arcs, target))
+    flat = by_arcs.of_faces(target.part_tree).astype(np.int64)
     present = np.append(by_arcs.parts.id, given.id[given.is_drawn])
-    labels = np.where(flat > given.highest, flat, _carried(given, target, landing, present))
+    labels = np.where(flat > given.highest, flat, _transferred(given, target, point_map, present))
     labels = _connected(labels[target.graph.stands_for], target.graph)
-    return FaceLabels(level, labels.astype(np.int32), _counted(given, labels, by_arcs, target))
+    return FaceLabels(level, labels.astype(np.int32), _table_of_parts(given, labels, by_arcs, target))
 
 
-def _carried(given: GivenParts, target: Divisible, landing: Ints, present: Ints) -> Ints:
+def _transferred(given: GivenParts, target: Divisible, point_map: Ints, present: Ints) -> Ints:
     """Return (F,) the label that the greater part of each face has, after smoothing."""
     shape = target.shape
-    shares = (given.shares @ _heirs(given, present))[landing]
+    shares = (given.shares @ _heirs(given, present))[point_map]
     soft = smoothed(TriangleMesh(shape.positions, shape.triangles), shares, BORDER_WIDTH)
     rows = np.repeat(target.face, 3)
     n_faces = len(target.graph.area)
@@ -168,7 +176,7 @@ def _carried(given: GivenParts, target: Divisible, landing: Ints, present: Ints)
 
 
 def _heirs(given: GivenParts, present: Ints) -> Floats:
-    """Return (1 + P, 1 + P) what takes the place of body and parts: themselves, or what absent ones grow out of."""
+    """Return (1 + P, 1 + P) the heirs of body and parts: themselves, or for absent ones the part they grow out of."""
     ids = np.append(BODY, given.id).tolist()
     parent = dict(zip(given.id.tolist(), given.parent.tolist(), strict=True))
     stays = {BODY, *present.tolist()}
@@ -186,8 +194,8 @@ def _connected(labels: Ints, graph: FaceGraph) -> Ints:
     return repaired_labels(pieces.arc, pieces)[pieces.of_face]
 
 
-def _counted(given: GivenParts, labels: Ints, by_arcs: BranchLabels, target: Divisible) -> Parts:
-    """Return the table of parts: origins from the arcs where they are cut off there, from the reference otherwise."""
+def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, target: Divisible) -> Parts:
+    """Return the table of parts: origins from the arcs where these are cut off, from the reference otherwise."""
     n = 1 + max(int(labels.max(initial=BODY)), given.highest)
     parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
     known = by_arcs.parts.id < n

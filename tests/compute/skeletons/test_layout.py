@@ -32,7 +32,7 @@ def test_registered_characters_have_the_same_bones(human_analysis, walking):
 
 def test_a_skeleton_laid_out_like_itself_stays_as_it_is(human_analysis):
     found = skeleton(human_analysis, n_pieces=2)
-    again = skeleton(human_analysis, labels=human_analysis.segment().labels, layout=found.layout)
+    again = skeleton(human_analysis, labels=human_analysis.segment(mode="features").labels, layout=found.layout)
     np.testing.assert_array_equal(found.parent, again.parent)
     np.testing.assert_allclose(found.joints, again.joints, atol=1e-12)
 
@@ -40,7 +40,7 @@ def test_a_skeleton_laid_out_like_itself_stays_as_it_is(human_analysis):
 @pytest.mark.parametrize("level", [2, 3])
 def test_parts_from_deeper_levels_have_bones_too(human_analysis, level):
     reference = skeleton(human_analysis, n_pieces=2)
-    labels = human_analysis.segment().labels
+    labels = human_analysis.segment(mode="features").labels
     found = skeleton(human_analysis, level=level, labels=labels, layout=reference.layout)
     assert (
         level_with_tips(human_analysis, labels, reference.layout.tips, level) == human_analysis.hierarchy.default_level
@@ -51,12 +51,12 @@ def test_parts_from_deeper_levels_have_bones_too(human_analysis, level):
 def test_parts_that_the_other_shape_does_not_have_get_bones_of_their_own():
     few, many = star(4), analyze(star(5), order=1)
     reference = skeleton(analyze(few, order=1))
-    labels = many.segment().labels
+    labels = many.segment(mode="features").labels
     found = skeleton(many, labels=labels, layout=reference.layout)
     assert set(found.part) >= set(np.unique(labels)) - {0}
 
 
 def test_a_part_that_is_missing_leaves_the_others_their_bones():
     many, few = analyze(star(5), order=1), analyze(star(4), order=1)
-    found = skeleton(few, labels=few.segment().labels, layout=skeleton(many).layout)
-    assert set(np.unique(found.part)) - {0} == set(np.unique(few.segment().labels)) - {0}
+    found = skeleton(few, labels=few.segment(mode="features").labels, layout=skeleton(many).layout)
+    assert set(np.unique(found.part)) - {0} == set(np.unique(few.segment(mode="features").labels)) - {0}

@@ -4,45 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from compute import TriangleMesh, analyze, correspond, match
+from compute import TriangleMesh, correspond, match
 from compute.errors import RegistrationError
-from compute.registration.dense.surface_points import SurfaceTree
-from compute.registration.dense.transfer import (
-    islands,
-    local_turns,
-    majority_of_polygons,
-    mixed,
-    transfer_corners,
-    transfer_displacements,
-)
-from tests.compute.registration.shapes import lumpy_ball, moved, shuffled
+from tests.compute.registration.shapes import moved, quick, shuffled
 from tests.shapes import icosphere, joined, tetrahedron
-
-
-def quick(mesh):
-    """Analyze as far as matching needs it."""
-    return analyze(mesh, n_functions=2, order=1)
-
-
-@pytest.fixture(scope="module")
-def ball():
-    return quick(lumpy_ball(2))
-
-
-@pytest.fixture(scope="module")
-def finer():
-    """The same surface with other triangles."""
-    return quick(lumpy_ball(3))
-
-
-@pytest.fixture(scope="module")
-def to_finer(ball, finer):
-    return correspond(ball, finer)
-
-
-@pytest.fixture(scope="module")
-def to_ball(ball, finer):
-    return correspond(finer, ball)
 
 
 def test_a_mesh_goes_to_itself_by_number(ball):
@@ -126,61 +91,3 @@ def test_a_matching_of_other_shapes_is_refused(ball, finer):
     tiny = quick(tetrahedron())
     with pytest.raises(RegistrationError, match="other shapes"):
         correspond(ball, tiny, matching=match(ball, finer))
-
-
-def test_displacements_turn_with_the_surface_and_grow_with_it(ball):
-    other, order = shuffled(moved(ball.mesh))
-    found = correspond(ball, quick(other))
-    pushes = np.random.default_rng(0).normal(size=ball.mesh.vertices.shape)
-    pushed = moved(TriangleMesh(ball.mesh.vertices + pushes, ball.mesh.triangles)).vertices
-    expected = (pushed - moved(ball.mesh).vertices)[order]
-    np.testing.assert_allclose(transfer_displacements(found, ball.mesh, other, pushes), expected, atol=1e-6)
-
-
-def test_turns_of_a_mirror_image_are_reflections(ball):
-    mirrored = shuffled(TriangleMesh(ball.mesh.vertices * [1, -1, 1], ball.mesh.triangles[:, ::-1]))[0]
-    target = quick(mirrored)
-    found = correspond(ball, target, matching=match(ball, target, mirrored=True))
-    turns = local_turns(found, ball.mesh, mirrored)
-    np.testing.assert_allclose(turns, np.broadcast_to(np.diag([1, -1, 1]), turns.shape), atol=1e-6)
-
-
-def test_no_face_lies_across_a_seam(to_finer, ball, finer):
-    right = ball.mesh.vertices[ball.mesh.triangles].mean(axis=1)[:, 0] > 0
-    values = ball.mesh.vertices[ball.mesh.triangles][..., 1:] + 100 * right[:, None, None]
-    assert islands(ball.mesh.triangles, values).max() == 1
-    triangles = finer.mesh.triangles
-    corner_triangle = np.repeat(np.arange(len(triangles)), 3)
-    found, keeps_seams = transfer_corners(to_finer, ball.mesh, values, triangles.ravel(), corner_triangle)
-    assert keeps_seams
-    assert np.ptp(found.reshape(-1, 3, 2), axis=1).max() < 5
-
-
-def test_the_majority_of_a_polygon_is_by_area():
-    labels, areas, polygon = np.array([5, 3, 3, 9]), np.array([3.0, 1, 1, 0]), np.array([0, 0, 0, 2])
-    np.testing.assert_array_equal(majority_of_polygons(labels, areas, polygon, 3), [5, 0, 9])
-
-
-def test_a_mix_is_between_what_is_there_and_what_comes():
-    before, after = np.zeros((3, 2)), np.ones((3, 2))
-    np.testing.assert_array_equal(mixed(before, after, np.array([0, 0.25, 1])), [[0, 0], [0.25, 0.25], [1, 1]])
-
-
-def test_the_nearest_point_of_a_sphere_lies_in_the_same_direction():
-    sphere = icosphere(3)
-    points = np.random.default_rng(0).normal(size=(50, 3))
-    normals = points / np.linalg.norm(points, axis=1, keepdims=True)
-    tree = SurfaceTree(sphere.vertices, sphere.triangles, turn=0.01, wrong_side=1.0)
-    found, distance = tree.nearest(1.5 * normals, normals, 8)
-    places = found.blend(sphere.vertices, sphere.triangles)
-    assert np.einsum("ij,ij->i", places / np.linalg.norm(places, axis=1, keepdims=True), normals).min() > 0.999
-    np.testing.assert_allclose(distance, 0.5, atol=0.02)
-
-
-def test_the_other_side_of_a_thin_plate_is_not_taken():
-    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
-    plate = np.vstack([square, square - [0, 0, 0.01]])
-    triangles = np.array([[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]])
-    tree = SurfaceTree(plate, triangles, turn=0.01, wrong_side=1.0)
-    found, _ = tree.nearest(np.array([[0.5, 0.4, -0.01]]), np.array([[0.0, 0, 1]]), 4)
-    assert found.triangles[0] < 2

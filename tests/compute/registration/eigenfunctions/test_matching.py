@@ -5,30 +5,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compute.analysis import Analysis, analyze
+from compute.analysis import analyze
 from compute.errors import Cancelled, RegistrationError
 from compute.registration.eigenfunctions.matching import match, match_shapes
 from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape
 from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
 from compute.surface.mesh import TriangleMesh
 from examples import hand, quadruped
-from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, shuffled
+from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, quick, shuffled
 from tests.shapes import icosphere, torus
 
 
 @pytest.fixture(scope="module")
 def ball():
-    return analyzed(lumpy_ball())
+    return quick(lumpy_ball())
 
 
 @pytest.fixture(scope="module")
 def paired():
-    return analyzed(lumpy_ball(lumps=PAIRED_LUMPS))
-
-
-def analyzed(mesh: TriangleMesh) -> Analysis:
-    """Return an analysis that is quick to make: matching has functions of its own."""
-    return analyze(mesh, n_functions=2, order=1)
+    return quick(lumpy_ball(lumps=PAIRED_LUMPS))
 
 
 def shape_of(analysis) -> SpectralShape:
@@ -51,7 +46,7 @@ def share_at(matching, source, target, expected) -> float:
 
 def test_a_moved_scaled_and_shuffled_copy_is_recovered_exactly(ball):
     copy, order = shuffled(moved(ball.mesh))
-    target = analyzed(copy)
+    target = quick(copy)
     matching = match(ball, target)
     assert matching.confidence > 0.9
     np.testing.assert_allclose(np.abs(matching.map[:20, :20]), np.eye(20), atol=5e-3)
@@ -79,7 +74,7 @@ def test_functions_that_are_flipped_switched_or_mixed_are_put_right(ball, change
 
 
 def test_inverted_winding_does_not_mirror(ball):
-    target = analyzed(TriangleMesh(ball.mesh.vertices, ball.mesh.triangles[:, ::-1]))
+    target = quick(TriangleMesh(ball.mesh.vertices, ball.mesh.triangles[:, ::-1]))
     matching = match(ball, target)
     assert share_at(matching, ball, target, np.arange(642)) == 1
 
@@ -87,14 +82,14 @@ def test_inverted_winding_does_not_mirror(ball):
 def test_left_lands_on_left_of_a_mirrored_copy(paired):
     """The body is its own mirror image, so the copy is the body itself with its vertices swapped."""
     copy, order = shuffled(mirror_image(paired.mesh))
-    target = analyzed(copy)
+    target = quick(copy)
     swapped = nearest_vertices(mirror_image(paired.mesh).vertices, paired.mesh.vertices)
     assert share_at(match(paired, target), paired, target, swapped[order]) > 0.99
 
 
 def test_left_lands_on_right_of_a_mirrored_copy_where_asked(paired):
     copy, order = shuffled(mirror_image(paired.mesh))
-    target = analyzed(copy)
+    target = quick(copy)
     matching = match(paired, target, mirrored=True)
     assert matching.mirrored
     assert share_at(matching, paired, target, order) > 0.99
@@ -102,7 +97,7 @@ def test_left_lands_on_right_of_a_mirrored_copy_where_asked(paired):
 
 def test_shapes_of_one_topology_correspond_by_number(ball):
     bent = TriangleMesh(ball.mesh.vertices * [1, 1, 1.2], ball.mesh.triangles)
-    matching = match(ball, analyzed(bent))
+    matching = match(ball, quick(bent))
     assert matching.same_topology
     assert matching.confidence == 1
     np.testing.assert_array_equal(matching.order[:6], np.arange(6))
@@ -111,7 +106,7 @@ def test_shapes_of_one_topology_correspond_by_number(ball):
 def test_switching_ellipsoids_are_put_in_order():
     """Y20 stands before the pair Y1+-1 at rz = 2.78 and behind it at 2.74 (Reuter 2009, Figure 2)."""
     sphere = icosphere(4)
-    early, late = (analyzed(shuffled(TriangleMesh(sphere.vertices * [1, 1, rz], sphere.triangles))[0])
+    early, late = (quick(shuffled(TriangleMesh(sphere.vertices * [1, 1, rz], sphere.triangles))[0])
                    for rz in (2.74, 2.78))  # fmt: skip
     matching = match(early, late)
     along = [np.flatnonzero(_depends_on_z_alone(analysis))[1] for analysis in (early, late)]
@@ -123,7 +118,7 @@ def test_switching_ellipsoids_are_put_in_order():
 def test_equal_arms_go_round_in_order_and_leave_doubt(n_arms, width):
     arms = [(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(n_arms) / n_arms]
     star = lumpy_ball(4, tuple((arm, 1.5, width) for arm in arms))
-    source, target = analyzed(star), analyzed(shuffled(star)[0])
+    source, target = quick(star), quick(shuffled(star)[0])
     matching = match(source, target)
     landed = source.matching_basis.nodes[landed_vertices(matching, source, target)]
     tips = nearest_vertices(3 * np.array(arms), target.mesh.vertices)
@@ -135,7 +130,7 @@ def test_equal_arms_go_round_in_order_and_leave_doubt(n_arms, width):
 
 
 def test_a_coarser_version_of_another_size_is_the_same_shape(paired):
-    finer, coarser = analyzed(lumpy_ball(4, PAIRED_LUMPS)), analyzed(moved(lumpy_ball(2, PAIRED_LUMPS)))
+    finer, coarser = quick(lumpy_ball(4, PAIRED_LUMPS)), quick(moved(lumpy_ball(2, PAIRED_LUMPS)))
     for source, target in ((paired, finer), (finer, paired), (paired, coarser), (coarser, paired)):
         matching = match(source, target)
         assert matching.confidence > 0.5
@@ -148,7 +143,7 @@ def test_an_open_version_is_the_same_shape(paired):
     centres = paired.mesh.vertices[paired.mesh.triangles].mean(axis=1)
     tail = np.array([0, -1, 0.5]) / np.linalg.norm([0, -1, 0.5])
     stays = centres @ tail < 0.8 * (centres @ tail).max()
-    opened = analyzed(shuffled(TriangleMesh(paired.mesh.vertices, paired.mesh.triangles[stays]))[0])
+    opened = quick(shuffled(TriangleMesh(paired.mesh.vertices, paired.mesh.triangles[stays]))[0])
     order = shuffled(paired.mesh)[1]
     matching = match(paired, opened)
     assert matching.confidence > 0.5
@@ -163,20 +158,20 @@ def test_an_open_version_is_the_same_shape(paired):
 
 def test_spheres_can_be_matched_in_any_way_so_none_is_sure():
     coarse, fine = icosphere(2), moved(icosphere(3))
-    assert match(analyzed(coarse), analyzed(fine)).confidence < 0.5
+    assert match(quick(coarse), quick(fine)).confidence < 0.5
 
 
 @pytest.mark.parametrize("character", [quadruped, hand])
 def test_shapes_that_have_nothing_in_common_are_not_matched_with_confidence(character):
     made = character(1500)
-    source = analyzed(TriangleMesh(made.mesh_in_pose("rest"), split(made.quads)))
-    assert match(source, analyzed(torus())).confidence < 0.1
+    source = quick(TriangleMesh(made.mesh_in_pose("rest"), split(made.quads)))
+    assert match(source, quick(torus())).confidence < 0.1
 
 
 @pytest.mark.parametrize("number", [1, 2, 5, 8])
 def test_a_given_sign_is_kept_even_if_no_matching_fits_it(ball, number):
     """A shape without symmetry has one right sign for each function; the other one is given here."""
-    target = analyzed(shuffled(ball.mesh)[0])
+    target = quick(shuffled(ball.mesh)[0])
     best = match(ball, target)
     flipped = match(ball, target, flips={number: -int(best.signs[number - 1])})
     assert flipped.signs[number - 1] == -best.signs[number - 1]
@@ -193,7 +188,7 @@ def test_functions_to_match_point_where_the_eigenfunctions_do(paired):
 
 def test_progress_rises_to_the_end_and_is_told_often(paired):
     told = []
-    match(paired, analyzed(shuffled(paired.mesh)[0]), progress=lambda fraction, text: told.append(fraction))
+    match(paired, quick(shuffled(paired.mesh)[0]), progress=lambda fraction, text: told.append(fraction))
     assert told == sorted(told)
     assert told[0] >= 0
     assert told[-1] <= 1
@@ -206,14 +201,14 @@ def test_a_match_can_be_cancelled_at_every_step(word):
         if word in text:
             raise Cancelled
 
-    source = analyzed(lumpy_ball(2))
-    target = analyzed(shuffled(source.mesh)[0])
+    source = quick(lumpy_ball(2))
+    target = quick(shuffled(source.mesh)[0])
     with pytest.raises(Cancelled):
         match(source, target, progress=cancel)
 
 
 def test_a_given_sign_is_kept_and_the_others_follow(paired):
-    target = analyzed(shuffled(paired.mesh)[0])
+    target = quick(shuffled(paired.mesh)[0])
     matching = match(paired, target)
     flipped = match(paired, target, flips={1: -int(matching.signs[0])})
     assert flipped.signs[0] == -matching.signs[0]

@@ -1,6 +1,6 @@
-"""Where a shape narrows: the lengths of the level sets along the arcs."""
+"""Heights, necks and roundness of arcs, from the lengths of the level sets along them."""
 
-from dataclasses import replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,12 +12,33 @@ from .arc_tree import ArcTree
 N_SAMPLES = 8
 # An arc lower than this fraction of the field's range is a thin shell; its level sets are not measured.
 LEAST_HEIGHT = 0.02
-# The last of a part, this fraction of its area, does not tell whether the part is blunt.
+# The tip of a part, this fraction of its area, is left out of its roundness: every tip is round.
 TIP = 0.3
 
 
-def measured(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcTree:
-    """Return the tree with its heights, and what the level sets tell of arcs that are no thin shells.
+@dataclass(frozen=True, eq=False)
+class ArcMeasures:
+    """The sizes of the arcs of a tree, by the level sets along them.
+
+    Attributes
+    ----------
+    height : (A,) float64
+        Difference of the field between the two ends of the arc, as a fraction of its range; 0 for roots.
+    closing_length, longest : (A,) float64
+        Length of the level set where the arc closes and at its longest inside; 0 where it was not worth measuring.
+    roundness : (A,) float64
+        The least length²/area of all level sets from the leaf to where the arc closes, area being what they cut off:
+        4 pi for a flat disk, 2 pi for a hemisphere, less for a longer protrusion; 0 where it was not worth measuring.
+    """
+
+    height: Floats
+    closing_length: Floats
+    longest: Floats
+    roundness: Floats
+
+
+def measure_arcs(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcMeasures:
+    """Measure the heights of all arcs, and the level sets of those that are no thin shells.
 
     Parameters
     ----------
@@ -27,19 +48,13 @@ def measured(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcTree:
     field : ScalarField
     """
     rising = -field.values if tree.is_of_maxima else field.values
-    bottom, top = _heights(rising, tree)
-    height = np.where(tree.saddle < 0, 0.0, (top - bottom) / max(field.value_range, float(np.finfo(float).tiny)))
+    bottom, top = _ends(rising, tree)
+    height = np.where(tree.has_saddle, top - bottom, 0.0) / max(field.value_range, float(np.finfo(float).tiny))
     tall = np.flatnonzero(height > LEAST_HEIGHT)
     levels = top[tall, None] - (top - bottom)[tall, None] * (np.arange(N_SAMPLES) + 0.05) / N_SAMPLES
     length, area = np.zeros((2, len(height), N_SAMPLES))
     length[tall], area[tall] = _level_sets(rising, arc, tree, field.net, tall, levels)
-    return replace(
-        tree,
-        height=height,
-        closing_length=length[:, 0],
-        longest=length.max(axis=1),
-        roundness=_roundness(tree.part, length, area),
-    )
+    return ArcMeasures(height, length[:, 0], longest=length.max(axis=1), roundness=_roundness(tree.part, length, area))
 
 
 def _level_sets(
@@ -66,18 +81,19 @@ def _roundness(part: Ints, length: Floats, area: Floats) -> Floats:
     """Return the least length²/area of the level sets between each arc's leaf and its end, tips left out."""
     roundness = np.zeros(len(part))
     for arc in np.flatnonzero(area[:, 0]).tolist():
-        on_the_way = part[: arc + 1] == part[arc]
-        lengths, areas = length[: arc + 1][on_the_way], area[: arc + 1][on_the_way]
+        on_path = part[: arc + 1] == part[arc]
+        lengths, areas = length[: arc + 1][on_path], area[: arc + 1][on_path]
         counted = areas > TIP * area[arc, 0]
         roundness[arc] = (lengths[counted] ** 2 / areas[counted]).min()
     return roundness
 
 
-def _heights(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
+def _ends(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
     """Return the values between which each arc lies: where its leaf is or its children close, and where it closes."""
-    top = np.where(tree.saddle < 0, np.inf, values[tree.saddle])
+    # What closes at no saddle has no upper end; any number will do there.
+    top = np.where(tree.has_saddle, values[tree.saddle], 0.0)
     bottom = values[tree.extremum]
-    children = np.flatnonzero(tree.parent >= 0)
+    children = np.flatnonzero(tree.has_saddle)
     bottom[tree.parent[children]] = top[children]
     return bottom, top
 

@@ -1,4 +1,4 @@
-"""The paper's way: order and sign from persistence diagrams, parts from the spectral embedding of their tips.
+"""The paper's matching: order and sign from persistence diagrams, parts from the spectral embedding of their tips.
 
 A negated eigenfunction has the mirrored diagram, so flipped signs are found; but where a shape is symmetric a function
 and its negation have the same diagram, and the sign stays open. This is shown, and does not decide alone.
@@ -14,17 +14,17 @@ from ...analysis import Analysis
 from ...errors import RegistrationError
 from ...fem.eigenbasis import Eigenbasis
 from ...fields.scalar_field import refined_net
-from ...msc.critical_points import rank_vertices
 from ...msc.diagram_distance import bottleneck_distance, hausdorff_distance
 from ...msc.links import links_of
 from ...msc.merge_tree import merge_tree
+from ...msc.ranked_net import ranked_net
 from ...segmentation.parts.part_labels import BODY, Segmentation
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import ROUNDING, evened
 from ..eigenfunctions.spectral_shape import SpectralShape
 from ..eigenfunctions.zoomout import assigned
 
-# How many functions are compared, and how far a function may move (Reuter 2009, sections 4.6 and 4.7).
+# Functions that are compared, and how far a function may move (Reuter 2009, sections 4.6 and 4.7).
 DIAGRAM_FUNCTIONS = 6
 NEIGHBOURING = 1
 # Points nearer to the diagonal than this fraction of the range are noise (Reuter 2009, section 4.3).
@@ -36,7 +36,7 @@ METRICS = {"hausdorff": hausdorff_distance, "bottleneck": bottleneck_distance}
 
 @dataclass(frozen=True, eq=False)
 class DiagramMatching:
-    """What persistence diagrams say about the functions of two shapes.
+    """A matching of the functions of two shapes by their persistence diagrams.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class DiagramMatching:
 
     @property
     def is_open(self) -> Bools:
-        """(k,) the functions whose sign the diagrams do not tell: those of the shape's symmetry."""
+        """(k,) whether the diagrams leave the sign of a function open: those of the shape's symmetry."""
         return np.abs(self._chosen[:, 1] - self._chosen[:, 0]) <= SAME_DISTANCE * self.ranges
 
 
@@ -80,8 +80,9 @@ def match_diagrams(
     ----------
     source, target : Analysis
     n_functions : int
-        How many functions; fewer where a shape has not as many.
+        Number of functions; fewer where a shape has not as many.
     metric : "hausdorff" or "bottleneck"
+        Distance of two diagrams.
 
     Raises
     ------
@@ -95,26 +96,27 @@ def match_diagrams(
     if metric not in METRICS:
         raise RegistrationError(f'The metric is "hausdorff" or "bottleneck", not "{metric}".')
     n_functions = min(n_functions, len(source.eigenbasis.values), len(target.eigenbasis.values))
-    here, there = (separated_points(analysis.eigenbasis, n_functions) for analysis in (source, target))
-    return _compared(here, there, metric)
+    source_points, target_points = (separated_points(analysis.eigenbasis, n_functions) for analysis in (source, target))
+    return _compared(source_points, target_points, metric)
 
 
 def match_shape_diagrams(source: SpectralShape, target: SpectralShape) -> DiagramMatching:
     """Compare the diagrams of the functions that matching uses, as `match_diagrams` does."""
     n_functions = min(DIAGRAM_FUNCTIONS, source.n_functions - 1, target.n_functions - 1)
-    here, there = (
-        diagram_points(shape.triangles, shape.functions[:, 1 : 1 + n_functions]) for shape in (source, target)
+    functions = slice(1, 1 + n_functions)
+    source_points, target_points = (
+        diagram_points(shape.triangles, shape.functions[:, functions]) for shape in (source, target)
     )
-    return _compared(here, there, "hausdorff")
+    return _compared(source_points, target_points, "hausdorff")
 
 
-def _compared(here: list[Floats], there: list[Floats], metric: str) -> DiagramMatching:
-    n_functions = len(here)
+def _compared(source: list[Floats], target: list[Floats], metric: str) -> DiagramMatching:
+    n_functions = len(source)
     distances = np.full((n_functions, n_functions, 2), np.inf)
-    for i, own in enumerate(here):
+    for i, points in enumerate(source):
         for j in range(max(0, i - NEIGHBOURING), min(n_functions, i + NEIGHBOURING + 1)):
-            distances[i, j] = [METRICS[metric](own, sign * there[j]) for sign in (1, -1)]
-    return DiagramMatching(distances, np.array([np.ptp(points) for points in here]))
+            distances[i, j] = [METRICS[metric](points, sign * target[j]) for sign in (1, -1)]
+    return DiagramMatching(distances, np.array([np.ptp(points) for points in source]))
 
 
 def separated_points(basis: Eigenbasis, n_functions: int) -> list[Floats]:
@@ -129,16 +131,16 @@ def diagram_points(triangles: Ints, functions: Floats) -> list[Floats]:
     The lowest minimum and the highest maximum are in it as one more pair each, so that no diagram is empty.
     """
     links = links_of(triangles, len(functions))
-    found = []
+    diagrams = []
     for function in functions.T:
         values = evened(function, float(np.ptp(function)))
-        rank = rank_vertices(values)
-        trees = merge_tree(rank, links), merge_tree(len(values) - 1 - rank, links)
+        net = ranked_net(links, values)
+        trees = merge_tree(net), merge_tree(net.reversed())
         points = values[np.concatenate([np.stack([tree.extremum, tree.saddle], axis=1) for tree in trees])]
         low, high = values[links.vertex].min(), values[links.vertex].max()
         is_feature = np.abs(points[:, 1] - points[:, 0]) > NOISE * (high - low)
-        found.append(np.concatenate([points[is_feature], [[low, high], [high, low]]]))
-    return found
+        diagrams.append(np.concatenate([points[is_feature], [[low, high], [high, low]]]))
+    return diagrams
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,14 +177,20 @@ def match_tips(
     ----------
     .. [1] Reuter, IJCV 2010, section 4.7, equation 28.
     """
-    own, other = parts[0].parts, parts[1].parts
-    here, there = np.flatnonzero(own.id != BODY), np.flatnonzero(other.id != BODY)
-    n_functions = len(matching.order)
-    first = _embedded(source.eigenbasis, own.extremum[here])[:, :n_functions]
-    second = _embedded(target.eigenbasis, other.extremum[there])[:, matching.order] * matching.signs
-    distance = np.linalg.norm(first[:, None] - second, axis=2)
+    source_ids, source_tips = _tips(parts[0])
+    target_ids, target_tips = _tips(parts[1])
+    source_places = _embedded(source.eigenbasis, source_tips)[:, : len(matching.order)]
+    target_places = _embedded(target.eigenbasis, target_tips)[:, matching.order] * matching.signs
+    distance = np.linalg.norm(source_places[:, None] - target_places, axis=2)
     rows, columns = linear_sum_assignment(distance)
-    return PartPairs(own.id[here[rows]], other.id[there[columns]], distance[rows, columns])
+    return PartPairs(source_ids[rows], target_ids[columns], distance[rows, columns])
+
+
+def _tips(segmentation: Segmentation) -> tuple[Ints, Ints]:
+    """Return the labels of all parts but the body, and their extrema."""
+    parts = segmentation.parts
+    is_limb = parts.id != BODY
+    return parts.id[is_limb], parts.extremum[is_limb]
 
 
 def _embedded(basis: Eigenbasis, nodes: Ints) -> Floats:

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from compute import LevelError, MeshError, TriangleMesh, analyze, skeleton
 from compute.skeletons.interior import Interior
-from tests.compute.skeleton.conftest import leaves, winding_numbers
+from tests.compute.skeletons.conftest import leaves, winding_numbers
 from tests.shapes import icosphere, joined, star, torus
 
 # The rig's joints that an artist cannot do without, and how near to each a joint must be found, by the height.

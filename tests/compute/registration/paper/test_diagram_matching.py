@@ -7,7 +7,7 @@ import pytest
 
 from compute.analysis import Analysis, analyze
 from compute.errors import RegistrationError
-from compute.registration.paper.diagrams_matching import match_diagrams, match_tips, separated_points
+from compute.registration.paper.diagram_matching import match_diagrams, match_tips, separated_points
 from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, moved, shuffled
 
 
@@ -54,7 +54,9 @@ def test_a_negated_function_has_the_mirrored_diagram(ball):
 
 def test_tips_pair_the_same_parts(ball, copy):
     target, _ = copy
-    pairs = match_tips(ball, target, (ball.segment(), target.segment()), match_diagrams(ball, target))
+    pairs = match_tips(
+        ball, target, (ball.segment(mode="features"), target.segment(mode="features")), match_diagrams(ball, target)
+    )
     np.testing.assert_array_equal(pairs.source, pairs.target)
     assert pairs.distance.max() < 1e-3
 

@@ -1,0 +1,108 @@
+"""Correspondence by shape: the source is bent until it lies on the target, and vertices take the nearest points.
+
+The functional map gives rough places first, in which neighbours stay neighbours but small things are blurred.
+"""
+
+import numpy as np
+
+from ...progress import Progress, section
+from ...surface.mesh import Floats, Ints
+from ..eigenfunctions.spectral_shape import farthest_points
+from ..eigenfunctions.zoomout import nearest_rows
+from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
+from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, aligned
+from .point_map import DENSE_SAMPLES
+from .shape_pair import Image, ShapePair
+from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles, unit_rows
+
+# Nodes of the deformation, each for at least so many points, and points that are laid onto the target.
+N_NODES = 600
+POINTS_OF_NODE = 4
+N_SAMPLES = 2000
+# When the shapes lie on one another: candidates for the nearest point, and the distance on a surface of area 1 that a
+# turn of the normal counts as.
+LANDING_CANDIDATES, LANDING_TURN = 16, 0.005
+# A gap of this size between the shapes, on a surface of area 1, halves the confidence; so does this stretch of an edge.
+DOUBTFUL_GAP = 0.02
+DOUBTFUL_STRETCH = 2.5
+
+
+def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
+    """Return the nearest points of the bent source to the vertices and to the middles of triangles of the target."""
+    progress(0.0, "Mapping functions")
+    rough_places = _rough_places(pair)
+    bent_source = _bent_source(pair, rough_places, section(progress, 0.2, 0.8))
+    progress(0.8, "Finding the nearest points")
+    target, point = pair.target_shape, pair.target_points.point
+    tree = SurfaceTree(bent_source, pair.source_shape.triangles, LANDING_TURN, WRONG_SIDE)
+    net_points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES)
+    points = _on_input(pair, net_points)
+    confidence = np.where(pair.target_points.is_analyzed, _confidence(pair, points, gaps), 0.0)
+    return Image(points, _middle_triangles(pair, tree)[pair.target.surface.triangle_of_input], confidence)
+
+
+def _bent_source(pair: ShapePair, rough_places: Floats, progress: Progress) -> Floats:
+    """Return (n, 3) the points of the source's shape after it is bent onto the target from rough places (s, 3)."""
+    source = pair.source_shape
+    graph = deformation_graph(source, min(N_NODES, len(source.positions) // POINTS_OF_NODE))
+    motion = _first_motion(graph, pair.samples, rough_places)
+    samples = pair.samples[:N_SAMPLES]
+    motion = aligned(graph, motion, samples, source.normals[samples], pair.target_shape, progress)
+    return warped(graph, motion)
+
+
+def _rough_places(pair: ShapePair) -> Floats:
+    """Return (s, 3) the places on the target to which the functional map brings the samples of the source."""
+    target_samples = farthest_points(pair.target_shape.positions, DENSE_SAMPLES)
+    source_rows, target_rows = pair.embedded(pair.samples, target_samples)
+    return pair.target_shape.positions[target_samples[nearest_rows(source_rows, target_rows)]]
+
+
+def _first_motion(graph: DeformationGraph, samples: Ints, places: Floats) -> Motion:
+    """Return the motion that shifts each node by the mean of the shifts that bring samples around it to places."""
+    weights, node = graph.weights[samples], graph.followed[samples]
+    n_nodes = len(graph.nodes)
+    total = np.bincount(node.ravel(), weights.ravel(), n_nodes)
+    shift = np.repeat(places - graph.points[samples], node.shape[1], axis=0) * weights.ravel()[:, None]
+    sums = np.stack([np.bincount(node.ravel(), column, n_nodes) for column in shift.T], axis=1)
+    return motion_towards(graph, graph.nodes + sums / np.maximum(total, 1e-9)[:, None])
+
+
+def _on_input(pair: ShapePair, points: SurfacePoints) -> SurfacePoints:
+    """Return points on the net of the source as points on its input triangles."""
+    mesh, shape = pair.source.mesh, pair.source_shape
+    nodes = pair.source.matching_basis.nodes[shape.node]
+    places = points.blend(nodes, shape.triangles)
+    triangles = shape.input_triangle[points.triangles]
+    barycentric = nearest_in_triangles(places, mesh.vertices[mesh.triangles[triangles]])[0]
+    return SurfacePoints(triangles, barycentric)
+
+
+def _middle_triangles(pair: ShapePair, tree: SurfaceTree) -> Ints:
+    """Return the source's input triangle at the middle of each of the target's analyzed triangles."""
+    target = pair.target_shape
+    corners = pair.target_points.point[pair.target.surface.mesh.triangles]
+    normals = unit_rows(target.normals[corners].mean(axis=1))
+    nearest, _ = tree.nearest(target.positions[corners].mean(axis=1), normals, CANDIDATES)
+    return pair.source_shape.input_triangle[nearest.triangles]
+
+
+def _confidence(pair: ShapePair, points: SurfacePoints, gaps: Floats) -> Floats:
+    """Return (Vt,) from the gap to the bent source, and from how much the edges around a vertex are stretched."""
+    source, target, row = pair.source.mesh, pair.target.surface.mesh, pair.target_points.point
+    places = points.blend(source.vertices, source.triangles) / np.sqrt(pair.source.surface.mesh.areas.sum())
+    ends = target.edges.vertices
+    source_length, target_length = (
+        np.bincount(ends.ravel(), np.repeat(_lengths(positions, ends), 2), len(row))
+        for positions in (places, pair.target_shape.positions[row])
+    )
+    tiny = np.finfo(float).tiny
+    stretch = np.abs(np.log(np.maximum(source_length, tiny) / np.maximum(target_length, tiny)))
+    stretch = np.where(target_length > 0, stretch / np.log(DOUBTFUL_STRETCH), 0.0)
+    confidence = 1 / (1 + (gaps / DOUBTFUL_GAP) ** 2 + stretch**4)
+    # Doubles of a vertex share its edges.
+    return confidence[pair.target.surface.vertex_of_input]
+
+
+def _lengths(positions: Floats, ends: Ints) -> Floats:
+    return np.linalg.norm(positions[ends[:, 0]] - positions[ends[:, 1]], axis=1)

@@ -1,0 +1,119 @@
+"""Two matched shapes with what every way of mapping their vertices begins with."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...analysis import Analysis
+from ...surface.mesh import Bools, Floats, Ints
+from ..eigenfunctions.matching import Matching
+from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points
+from .point_map import DENSE_SAMPLES, refined_functional_map
+from .surface_points import SurfacePoints
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """The image of a target on a source: a place for each vertex and each triangle.
+
+    Attributes
+    ----------
+    points : SurfacePoints
+        On the source's input triangles, one for each of the target's Vt vertices.
+    triangles : (Tt,) int64
+        The source's triangle for each of the target's.
+    confidence : (Vt,) float64
+        From 0 to 1.
+    """
+
+    points: SurfacePoints
+    triangles: Ints
+    confidence: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class ShapePoints:
+    """The point of a spectral shape for each of the V vertices of the input.
+
+    Attributes
+    ----------
+    point : (V,) int64
+        For vertices that are not on the shape that of the nearest vertex in space that is.
+    is_analyzed : (V,) bool
+        Whether the vertex is on the shape.
+    """
+
+    point: Ints
+    is_analyzed: Bools
+
+
+@dataclass(frozen=True, eq=False)
+class ShapePair:
+    """Two analyzed shapes and how their functions match.
+
+    Attributes
+    ----------
+    source, target : Analysis
+    source_shape : SpectralShape
+        The mirror image if the source was matched so.
+    target_shape : SpectralShape
+    matching : Matching
+    """
+
+    source: Analysis
+    target: Analysis
+    source_shape: SpectralShape
+    target_shape: SpectralShape
+    matching: Matching
+
+    @cached_property
+    def samples(self) -> Ints:
+        """(s,) points of the source that lie far from each other."""
+        return farthest_points(self.source_shape.positions, DENSE_SAMPLES)
+
+    @cached_property
+    def functional_map(self) -> Floats:
+        """(kt, ks) the matching grown to all functions, target x source, the constant included."""
+        return refined_functional_map(self.source_shape, self.target_shape, self.matching, self.samples)
+
+    @cached_property
+    def target_points(self) -> ShapePoints:
+        """The target's points for the vertices of its input."""
+        return shape_points(self.target, self.target_shape)
+
+    def embedded(self, source_points: Ints, target_points: Ints) -> tuple[Floats, Floats]:
+        """Return points of both shapes in the space where the functional map makes them comparable."""
+        n_target, n_source = self.functional_map.shape
+        source_rows = self.source_shape.functions[source_points, :n_source] @ self.functional_map.T
+        return source_rows, self.target_shape.functions[target_points, :n_target]
+
+
+def shape_points(analysis: Analysis, shape: SpectralShape) -> ShapePoints:
+    """Return the points of a spectral shape of an analysis for the vertices of its input."""
+    vertices = analysis.mesh.vertices
+    point = np.full(len(vertices), -1)
+    is_vertex = shape.node < len(vertices)
+    point[shape.node[is_vertex]] = np.flatnonzero(is_vertex)
+    point = point[analysis.surface.vertex_of_input]
+    is_analyzed = point >= 0
+    return ShapePoints(point[nearest_known(vertices, is_analyzed)], is_analyzed)
+
+
+def nearest_known(vertices: Floats, is_known: Bools) -> Ints:
+    """Return for each vertex (V, 3) itself or, if it is not known, the nearest in space that is."""
+    nearest = np.arange(len(vertices))
+    lone = np.flatnonzero(~is_known)
+    if len(lone):
+        known = np.flatnonzero(is_known)
+        # Vertices without faces may lie nowhere.
+        nearest[lone] = known[cKDTree(vertices[known]).query(np.nan_to_num(vertices[lone]))[1]]
+    return nearest
+
+
+def triangle_around(triangles: Ints, n_vertices: int) -> tuple[Ints, Ints]:
+    """Return for each vertex a triangle around it, -1 if there is none, and the corner of it that the vertex is."""
+    side = np.full(n_vertices, -3)
+    side[triangles.ravel()] = np.arange(triangles.size)
+    return side // 3, side % 3

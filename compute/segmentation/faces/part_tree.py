@@ -1,0 +1,123 @@
+"""The part tree: the features of a shape with the faces they lie on, which every level is read from."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...surface.mesh import Bools, Floats, Ints, sum_by
+from ...surface.ties import ROUNDING
+from ..hierarchy.arc_measures import ArcMeasures
+from ..hierarchy.arc_tree import ArcTree
+from ..hierarchy.levels import Hierarchy
+from ..hierarchy.nesting import nested_cuts, numbered
+from ..modes import FEATURES, NESTED
+from .branches import Branches
+
+
+@dataclass(frozen=True, eq=False)
+class PartTree:
+    """The features of a shape and the faces of their arcs; F faces in B branches.
+
+    A part is a subtree of one of the trees, so a level is a choice of arcs at which parts are cut off.
+
+    Attributes
+    ----------
+    hierarchy : Hierarchy
+    measures : tuple of ArcMeasures
+        One for each tree of the hierarchy, as are the others.
+    closing_heights : tuple of (A,) float64
+        The value of the field at which each arc closes; not a number where it closes at no saddle.
+    branches : tuple of Branches
+        The faces of the arcs. Their pieces are the same in all trees.
+    """
+
+    hierarchy: Hierarchy
+    measures: tuple[ArcMeasures, ...]
+    closing_heights: tuple[Floats, ...]
+    branches: tuple[Branches, ...]
+
+    @property
+    def trees(self) -> tuple[ArcTree, ...]:
+        """The arc trees of the hierarchy."""
+        return self.hierarchy.trees
+
+    @property
+    def n_faces(self) -> int:
+        """How many faces there are."""
+        return len(self.branches[0].of_face)
+
+    @property
+    def arcs_of_faces(self) -> list[Ints]:
+        """For each tree, the arc (F,) of each face."""
+        return [pieces.arc[pieces.of_face] for pieces in self.branches]
+
+    @property
+    def bodies(self) -> tuple[int, ...]:
+        """The parts that are left of the shells when all others are cut off; they may be in pieces."""
+        return tuple(np.unique(self.trees[0].body).tolist())
+
+    def faces_inside(self, tree: int, arc: int) -> Bools:
+        """Mask (F,) of the faces in the part that is cut off at an arc of a tree."""
+        pieces = self.branches[tree]
+        return self.trees[tree].subtree(arc)[pieces.arc][pieces.of_face]
+
+    def cut_arcs(self, level: int, mode: str = NESTED, branch_levels: tuple[tuple[int, int], ...] = ()) -> list[Ints]:
+        """Return for each tree the part (A,) that is cut off at each arc on a level, 0 where nothing is.
+
+        Parameters
+        ----------
+        level : int
+        mode : "nested" or "features"
+        branch_levels : tuple of (part, level)
+            Parts inside which another level counts; their own borders stay.
+        """
+        is_cut = self._cut_at_level(level, mode)
+        cuts = self._numbered(is_cut)
+        for part, own_level in branch_levels:
+            inner = self._cut_at_level(min(own_level, self.hierarchy.n_levels - 1), mode)
+            for number, tree in enumerate(self.trees):
+                for arc in np.flatnonzero(cuts[number] == part).tolist():
+                    inside = tree.subtree(arc)
+                    inside[arc] = False
+                    is_cut[number] = np.where(inside, inner[number], is_cut[number])
+            cuts = self._numbered(is_cut)
+        return cuts
+
+    def labels_of_branches(self, cuts: list[Ints]) -> Ints:
+        """Return the label (B,) of each branch, given the parts (A,) that are cut off at the arcs of each tree.
+
+        Where parts of maxima and of minima overlap, the smaller one lies on top.
+        """
+        body = self.trees[0].body[self.branches[0].arc]
+        labels, size = body, np.full(len(body), np.inf)
+        for tree, pieces, cut in zip(self.trees, self.branches, cuts, strict=True):
+            label = tree.spread(cut)[pieces.arc]
+            area = sum_by(label, pieces.area)[label]
+            is_on_top = (label > 0) & (label != body) & (area < (1 - ROUNDING) * size)
+            labels, size = np.where(is_on_top, label, labels), np.where(is_on_top, area, size)
+        return labels
+
+    def _numbered(self, is_cut: list[Bools]) -> list[Ints]:
+        return [numbered(tree, cut) for tree, cut in zip(self.trees, is_cut, strict=True)]
+
+    def _cut_at_level(self, level: int, mode: str) -> list[Bools]:
+        """For each tree, the mask of the arcs that end a part."""
+        if mode == FEATURES:
+            return [tree.is_feature(level) for tree in self.trees]
+        default_level = self.hierarchy.default_level
+        return [
+            nested_cuts(tree, measures, shares, level=level, default_level=default_level)
+            for tree, measures, shares in zip(self.trees, self.measures, self._shares_of_shells, strict=True)
+        ]
+
+    @cached_property
+    def _shares_of_shells(self) -> list[Floats]:
+        """For each tree, the share (A,) of each arc in the area of its shell."""
+        return [_share_of_shell(tree, pieces) for tree, pieces in zip(self.trees, self.branches, strict=True)]
+
+
+def _share_of_shell(tree: ArcTree, pieces: Branches) -> Floats:
+    area = sum_by(pieces.arc, pieces.area, len(tree.part))
+    whole = sum_by(tree.shell, area)[tree.shell]
+    return area / np.where(whole > 0, whole, 1.0)

@@ -1,0 +1,50 @@
+"""A shape laid onto itself stays, and comes back from near by."""
+
+import numpy as np
+import pytest
+
+from compute.registration.dense.deformation_graph import deformation_graph, motion_towards, warped
+from compute.registration.dense.nonrigid_alignment import (
+    RELAXATION,
+    SLIDING,
+    ClosestPoints,
+    Round,
+    aligned,
+    gauss_newton_step,
+)
+from compute.registration.eigenfunctions.spectral_shape import spectral_shape
+
+
+@pytest.fixture(scope="module")
+def shape(ball):
+    return spectral_shape(ball.matching_basis)
+
+
+@pytest.fixture(scope="module")
+def graph(shape):
+    return deformation_graph(shape, 60)
+
+
+def test_a_shape_that_lies_on_its_target_stays(shape, graph):
+    samples = np.arange(0, len(shape.positions), 3)
+    motion = aligned(graph, motion_towards(graph, graph.nodes), samples, shape.normals[samples], shape)
+    np.testing.assert_allclose(warped(graph, motion), shape.positions, atol=1e-6)
+
+
+def test_a_shape_beside_its_target_is_laid_onto_it(shape, graph):
+    samples = np.arange(0, len(shape.positions), 3)
+    away = motion_towards(graph, graph.nodes + np.array([0.02, -0.015, 0.01]))
+    motion = aligned(graph, away, samples, shape.normals[samples], shape)
+    gap = np.linalg.norm(warped(graph, motion) - shape.positions, axis=1)
+    assert gap.mean() < 0.1 * np.linalg.norm([0.02, -0.015, 0.01])
+
+
+def test_distance_along_the_surface_hardly_counts(graph, shape):
+    """Every other point is drawn up along its normal, the rest down across it; the stiff whole goes up."""
+    is_up, up, across = np.arange(len(shape.positions)) % 2 == 0, np.array([0, 0, 1.0]), np.array([1.0, 0, 0])
+    places = shape.positions + 1e-3 * np.where(is_up, 1, -1)[:, None] * up
+    weights = np.full(len(places), 1 / len(places))
+    closest = ClosestPoints(np.arange(len(places)), places, np.where(is_up[:, None], up, across), weights)
+    still = motion_towards(graph, graph.nodes)
+    step = warped(graph, gauss_newton_step(graph, still, closest, Round(stiffness=1e3, bend=np.inf))) - shape.positions
+    np.testing.assert_allclose(step[:, 2], RELAXATION * 1e-3 / (1 + 2 * SLIDING**2), rtol=0.1)

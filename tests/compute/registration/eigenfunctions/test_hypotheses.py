@@ -1,0 +1,48 @@
+"""Signed orders that are known are found."""
+
+import numpy as np
+import pytest
+
+from compute.registration.eigenfunctions.hypotheses import (
+    Effort,
+    Spectrum,
+    find_hypotheses,
+    nearest_orthogonal,
+    spectrum_of,
+)
+from compute.registration.eigenfunctions.spectral_shape import spectral_shape
+from tests.compute.registration.shapes import lumpy_ball, quick
+
+QUICK = Effort(levels=(6, 8), beam_width=50)
+
+
+@pytest.fixture(scope="module")
+def spectrum():
+    return spectrum_of(spectral_shape(quick(lumpy_ball(2)).matching_basis))
+
+
+def test_a_shape_agrees_best_with_itself(spectrum):
+    found = find_hypotheses(spectrum, spectrum, QUICK)
+    np.testing.assert_allclose(found.maps[0], np.eye(8), atol=1e-6)
+    assert found.total[0] == pytest.approx(2)
+    assert (np.diff(found.total) <= 0).all()
+
+
+def test_functions_that_were_flipped_and_switched_are_found(spectrum):
+    signs = np.where(np.isin(np.arange(18), [1, 4, 6]), -1.0, 1.0)
+    change = (np.eye(18) * signs)[[0, 2, 1, *range(3, 18)]]
+    target = Spectrum(spectrum.values, spectrum.moments.rotated(change))
+    np.testing.assert_allclose(find_hypotheses(spectrum, target, QUICK).maps[0], change[:8, :8], atol=0.05)
+
+
+def test_a_given_sign_is_begun_with(spectrum):
+    """Against what fits best: so no hypothesis is the identity."""
+    found = find_hypotheses(spectrum, spectrum, Effort(levels=(6,), beam_width=50), {2: -1})
+    assert found.total[0] < 2 - 1e-3 or found.maps[0, 2, 2] == pytest.approx(1, abs=1e-3)
+    assert len(find_hypotheses(spectrum, spectrum, QUICK).best(2)) == 2
+
+
+def test_the_nearest_orthogonal_matrix_undoes_a_stretch():
+    rotation = np.linalg.qr(np.random.default_rng(0).normal(size=(5, 5)))[0]
+    stretch = np.diag([0.5, 1, 2, 3, 4.0])
+    np.testing.assert_allclose(nearest_orthogonal((rotation @ stretch)[None])[0], rotation, atol=1e-12)
