@@ -36,11 +36,37 @@ def star_object(star):
     return add_object(star.vertices, star.triangles)
 
 
+@pytest.fixture(scope="session")
+def saved_scenes(tmp_path_factory):
+    """The folder of the scenes that were made so far."""
+    return tmp_path_factory.mktemp("scenes")
+
+
 @pytest.fixture
-def analyzed(star_object):
+def scene(fresh_scene, saved_scenes):
+    """Open the scene that a function makes, and return its active object: it is made once, and a file from then on."""
+
+    def opened(make, *arguments):
+        path = saved_scenes / f"{make.__module__}.{make.__name__}.blend"
+        if not path.is_file():
+            make(*arguments)
+            bpy.ops.wm.save_as_mainfile(filepath=str(path))
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+        return bpy.context.object
+
+    return opened
+
+
+@pytest.fixture
+def analyzed(scene, star):
     """The star, analyzed and divided at its default level."""
+    return scene(analyzed_star, star)
+
+
+def analyzed_star(star):
+    """Add the star and analyze it."""
+    add_object(star.vertices, star.triangles)
     assert bpy.ops.eigenparts.analyze() == {"FINISHED"}
-    return star_object
 
 
 def add_object(vertices, polygons, name="star"):

@@ -10,12 +10,14 @@ from tests.blender.conftest import everything_on, values_of
 
 
 @pytest.fixture
-def person():
+def person(scene):
     """A humanoid at its default level: body and hips, legs, arms and head."""
-    obj = add_posed_mesh(humanoid())
-    bpy.context.view_layer.objects.active = obj
+    return scene(analyzed_humanoid)
+
+
+def analyzed_humanoid():
+    bpy.context.view_layer.objects.active = add_posed_mesh(humanoid())
     bpy.ops.eigenparts.analyze(order="1")
-    return obj
 
 
 def labels_of(obj):

@@ -16,17 +16,25 @@ def human():
 
 
 @pytest.fixture
-def body(human):
-    obj = add_object(human.vertices, human.quads, "human")
+def body(scene, human):
+    return scene(analyzed_human, human)
+
+
+def analyzed_human(human):
+    add_object(human.vertices, human.quads, "human")
     bpy.ops.eigenparts.analyze(order="1")
-    return obj
 
 
 @pytest.fixture
-def rigged(body):
+def rigged(scene, human):
     """The body and its armature."""
+    armature = scene(rigged_human, human)
+    return bpy.data.objects["human"], armature
+
+
+def rigged_human(human):
+    analyzed_human(human)
     assert bpy.ops.eigenparts.create_armature(order="1") == {"FINISHED"}
-    return body, bpy.context.object
 
 
 def positions(obj):
@@ -146,14 +154,18 @@ def test_curves_follow_the_bones(body):
 
 
 @pytest.fixture
-def registered(body):
+def registered(scene, human):
     """The body, and a walking one with other faces that is registered to it."""
-    other = humanoid(5500)
-    walking = add_object(other.mesh_in_pose("walk"), other.quads, "walking")
+    return scene(registered_humans, human), bpy.data.objects["walking"]
+
+
+def registered_humans(human):
+    analyzed_human(human)
+    body, other = bpy.context.object, humanoid(5500)
+    add_object(other.mesh_in_pose("walk"), other.quads, "walking")
     bpy.ops.object.select_all(action="SELECT")
     bpy.context.view_layer.objects.active = body
     bpy.ops.eigenparts.register_selected(order="1")
-    return body, walking
 
 
 def create_armature_of(obj):

@@ -23,8 +23,12 @@ def positions(mesh):
 
 
 @pytest.fixture
-def quads(star):
+def quads(scene, star):
     """The star as quads, with all that a mesh can carry."""
+    return scene(analyzed_quads, star)
+
+
+def analyzed_quads(star):
     vertices, polygons = two_triangles_a_polygon(star)
     obj = add_object(vertices, polygons)
     mesh = obj.data
@@ -44,7 +48,6 @@ def quads(star):
     key = obj.shape_key_add(name="sheared")
     key.data.foreach_set("co", np.float32(vertices @ np.array([[1, 0, 0], [0.5, 1, 0], [0, 0, 2]])).ravel())
     bpy.ops.eigenparts.analyze()
-    return obj
 
 
 def test_area_is_kept_and_no_hole_is_left(quads):

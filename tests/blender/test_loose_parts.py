@@ -15,11 +15,14 @@ ENDS = np.cumsum([len(LARGE.triangles), len(SMALL.triangles)])
 
 
 @pytest.fixture
-def apart():
+def apart(scene):
     """Two stars beside each other, each analyzed by itself, and an eye on the second."""
-    obj = add_object(TOGETHER.vertices, TOGETHER.triangles)
+    return scene(stars_analyzed_apart)
+
+
+def stars_analyzed_apart():
+    add_object(TOGETHER.vertices, TOGETHER.triangles)
     bpy.ops.eigenparts.analyze(shells="SEPARATE")
-    return obj
 
 
 def labels_of(obj):

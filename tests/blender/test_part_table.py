@@ -20,12 +20,14 @@ def titles(obj):
 
 
 @pytest.fixture
-def nested():
+def nested(scene):
     """A humanoid, where limbs hang on a torso and fingers on hands."""
-    obj = add_posed_mesh(humanoid())
-    bpy.context.view_layer.objects.active = obj
+    return scene(analyzed_humanoid)
+
+
+def analyzed_humanoid():
+    bpy.context.view_layer.objects.active = add_posed_mesh(humanoid())
     bpy.ops.eigenparts.analyze()
-    return obj
 
 
 def test_the_list_tells_area_and_faces(analyzed):

@@ -84,11 +84,11 @@ def test_what_was_written_here_is_known_by_its_report_or_its_source(cli, finishe
     assert not is_result(finished.path)
     cli["report"].path_beside(finished.target).unlink()
     assert is_result(finished.target)
-    finished.path.unlink()
-    assert not is_result(finished.target)
-    for name in ("_parts.off", "spare_parts.off"):
+    for name in ("_parts.off", "spare_parts.off", "star_parts_of_mine.off"):
         (tmp_path / name).touch()
         assert not is_result(tmp_path / name)
+    finished.path.unlink()
+    assert not is_result(finished.target)
 
 
 def test_a_digest_is_that_of_the_content(cli, tmp_path):
