@@ -82,6 +82,9 @@ from .segmentation.faces.face_graph import FaceGraph as FaceGraph
 from .segmentation.faces.face_graph import face_graph as face_graph
 from .segmentation.faces.part_tree import PartTree as PartTree
 from .segmentation.hierarchy.arc_measures import ArcMeasures as ArcMeasures
+from .segmentation.hierarchy.arc_tree import ALWAYS as ALWAYS
+from .segmentation.hierarchy.arc_tree import NEVER as NEVER
+from .segmentation.hierarchy.arc_tree import NO_SADDLE as NO_SADDLE
 from .segmentation.hierarchy.arc_tree import ArcTree as ArcTree
 from .segmentation.hierarchy.levels import DEFAULT_THRESHOLD as DEFAULT_THRESHOLD
 from .segmentation.hierarchy.levels import NOISE_THRESHOLD as NOISE_THRESHOLD

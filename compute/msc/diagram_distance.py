@@ -82,7 +82,7 @@ def bottleneck_distance(first: Floats, second: Floats) -> float:
 
 
 def _can_match(first: Floats, second: Floats, radius: float) -> bool:
-    """Whether all points farther than the radius from the diagonal find partners within it.
+    """Return whether all points farther than the radius from the diagonal find partners within it.
 
     If those of either diagram can be matched by themselves, they can be matched together (Mendelsohn, Dulmage 1958).
     """

@@ -276,9 +276,9 @@ def _arc_of_vertex(net: RankedNet, slices: _Slices, piece: Ints, arcs: _Chains) 
     triangle[net.links.triangles.ravel()] = np.repeat(np.arange(len(net.links.triangles)), 3)
     vertex = np.flatnonzero((triangle >= 0) & (_node_at_rank(net, slices)[net.rank] < 0))
     level = np.searchsorted(slices.levels, net.rank[vertex]) - 1
-    found = np.full(net.n_vertices, -1)
-    found[vertex] = arcs.at(piece[slices.at(triangle[vertex], level)], level)
-    return found
+    arc = np.full(net.n_vertices, -1)
+    arc[vertex] = arcs.at(piece[slices.at(triangle[vertex], level)], level)
+    return arc
 
 
 def _components(n: int, left: Ints, right: Ints) -> tuple[int, Ints]:

@@ -33,6 +33,8 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
         and 0 <= tree.n_roots <= 2 * n_arcs
         and bool(is_later.all())
         and lie_within(tree.parent, -1, n_arcs)
+        and lie_within(tree.saddle, compute.NO_SADDLE, np.inf)
+        and lie_within(tree.closing, compute.ALWAYS, compute.NEVER + 1)
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
         and _are_sound_shells(tree)
     )
@@ -69,6 +71,6 @@ def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
     )
 
 
-def lie_within(indices: np.ndarray, start: int, stop: int) -> bool:
+def lie_within(indices: np.ndarray, start: float, stop: float) -> bool:
     """Whether all indices are at least ``start`` and below ``stop``."""
     return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)

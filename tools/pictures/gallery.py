@@ -148,7 +148,7 @@ def _labels(name: str, level: str) -> list[Ints32]:
 def _family(name: str) -> Family:
     analyses = [analyze(SUBJECTS[name].mesh(pose)) for pose in SUBJECTS[name].poses]
     shapes = [divisible(analysis, matching_shape(analysis)) for analysis in analyses]
-    own = analyses[0].segment()
+    own = analyses[0].segment(mode="features")
     reference = with_parts(shapes[0], own.labels.astype(np.int64), own.parts, own.level)
     return Family(analyses[0], shapes, [match_divisible(reference, shape) for shape in shapes[1:]])
 

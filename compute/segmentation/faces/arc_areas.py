@@ -1,4 +1,4 @@
-"""How much of every face lies on which arc, by cutting the net's triangles along the level sets of the saddles."""
+"""Shares of the faces on the arcs, by cutting the net's triangles along the level sets of the saddles."""
 
 from dataclasses import dataclass
 

@@ -44,7 +44,7 @@ class PartTree:
 
     @property
     def n_faces(self) -> int:
-        """How many faces there are."""
+        """Number of faces, F."""
         return len(self.branches[0].of_face)
 
     @property
