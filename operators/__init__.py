@@ -1,6 +1,7 @@
 """Everything a user can do, in one room for each purpose; each imports those that stand before it here.
 
-messages, mesh_data, mesh_state, outputs, jobs, parts, corrections, registration, transfer, armature, topology, settings
+blender, messages, mesh_data, mesh_state, outputs, jobs, parts, corrections, registration, transfer, armature,
+topology, settings
 """
 
 import bpy

@@ -15,7 +15,7 @@ MAY_IMPORT = {
     "operators": {"compute"},
     "cli": {"compute", "operators"},
     "ui": {
-        *("operators.mesh_state", "operators.messages", "operators.outputs.output_registry"),
+        *("operators.blender", "operators.mesh_state", "operators.messages", "operators.outputs.output_registry"),
         *("operators.parts.border_lines", "operators.parts.part_outline", "operators.mesh_data.selected_meshes"),
     },
 }
@@ -23,7 +23,7 @@ OUTSIDE = {
     "compute": {"numpy", "scipy"},
     "operators": {"bl_operators", "bmesh", "bpy", "bpy_extras", "mathutils", "numpy"},
     "cli": {"bpy", "distributed", "numpy"},
-    "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils"},
+    "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils", "numpy"},
 }
 
 # The rooms of a folder, each of which may import only those that stand before it.
@@ -36,7 +36,7 @@ ORDER = {
     "compute.segmentation": ["hierarchy", "faces", "borders", "edits", "parts"],
     "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],
     "operators": [
-        *("messages", "mesh_data", "mesh_state", "outputs", "jobs", "parts", "corrections", "registration"),
+        *("blender", "messages", "mesh_data", "mesh_state", "outputs", "jobs", "parts", "corrections", "registration"),
         *("transfer", "armature", "topology", "settings"),
     ],
 }

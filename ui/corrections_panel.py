@@ -1,7 +1,11 @@
 """Sidebar: correct parts by hand, and the list of what was corrected."""
 
+from typing import Any
+
 import bpy
 
+from ..operators.blender.known_values import mesh_of, present
+from ..operators.blender.registered_settings import CorrectionRow, MeshSettings, PartRow, mesh_settings
 from ..operators.messages.sentences import in_language
 from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
 
@@ -9,13 +13,27 @@ from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis
 class EIGENPARTS_UL_corrections(bpy.types.UIList):
     """Corrections of the active mesh"""
 
-    def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flt_flag=0) -> None:
+    def draw_item(
+        self,
+        context: bpy.types.Context | None,
+        layout: bpy.types.UILayout,
+        data: object,
+        item: Any,
+        icon: int | None,
+        active_data: object,
+        active_property: str | None,
+        index: int | None = 0,
+        flt_flag: int | None = 0,
+    ) -> None:
+        correction: CorrectionRow = item
         row = layout.row(align=True)
         name = row.row()
-        name.active = not item.rests
-        name.label(text=in_language(item.title), translate=False, icon="PAUSE" if item.rests else "CHECKMARK")
+        name.active = not correction.rests
+        name.label(
+            text=in_language(correction.title), translate=False, icon="PAUSE" if correction.rests else "CHECKMARK"
+        )
         remove = row.operator("eigenparts.remove_correction", text="", icon="X", emboss=False)
-        remove.index = item.place
+        present(remove).index = correction.place
 
 
 class EIGENPARTS_MT_merge(bpy.types.Menu):
@@ -23,12 +41,12 @@ class EIGENPARTS_MT_merge(bpy.types.Menu):
 
     bl_label = "Merge Into"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        settings = context.object.data.eigenparts
+    def draw(self, context: bpy.types.Context | None) -> None:
+        layout, settings = present(self.layout), mesh_settings(mesh_of(present(context).object))
         active = _active_row(settings)
         for row in settings.rows:
             if active is not None and row.part != active.part:
-                merge = self.layout.operator("eigenparts.merge_parts", text=row.title, translate=False)
+                merge = present(layout.operator("eigenparts.merge_parts", text=row.title, translate=False))
                 merge.part, merge.into = active.part, row.part
 
 
@@ -42,7 +60,7 @@ class EIGENPARTS_PT_corrections(EigenpartsPanel, bpy.types.Panel):
         if mesh is None:
             draw_missing_analysis(self.layout, context)
             return
-        settings = mesh.eigenparts
+        settings = mesh_settings(mesh)
         row = _active_row(settings)
         if row is None:
             self.layout.label(text="Click a part in the list", icon="INFO")
@@ -55,22 +73,22 @@ class EIGENPARTS_PT_corrections(EigenpartsPanel, bpy.types.Panel):
             self.layout.operator("eigenparts.clear_corrections", icon="TRASH")
 
 
-def _active_row(settings: bpy.types.PropertyGroup) -> bpy.types.PropertyGroup | None:
+def _active_row(settings: MeshSettings) -> PartRow | None:
     return settings.rows[settings.active_row] if 0 <= settings.active_row < len(settings.rows) else None
 
 
-def _draw_part(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, row: bpy.types.PropertyGroup) -> None:
+def _draw_part(layout: bpy.types.UILayout, settings: MeshSettings, row: PartRow) -> None:
     """Offer what can be done with a part; the body has no border of its own."""
     layout.label(text=row.title, translate=False)
     along_field = layout.column(align=True)
     along_field.enabled = row.part != 0
     along_field.prop(settings, "part_level")
     along_field.prop(settings, "part_border", slider=True)
-    along_field.operator("eigenparts.split_part", icon="MOD_BEVEL").part = row.part
+    present(along_field.operator("eigenparts.split_part", icon="MOD_BEVEL")).part = row.part
     layout.menu("EIGENPARTS_MT_merge", icon="AUTOMERGE_ON")
     faces = layout.column(align=True)
-    faces.operator("eigenparts.paint_part", icon="BRUSH_DATA").part = row.part
-    faces.operator("eigenparts.paint_part", text="New Part of Selected Faces", icon="ADD").new = True
+    present(faces.operator("eigenparts.paint_part", icon="BRUSH_DATA")).part = row.part
+    present(faces.operator("eigenparts.paint_part", text="New Part of Selected Faces", icon="ADD")).new = True
 
 
 register, unregister = bpy.utils.register_classes_factory(

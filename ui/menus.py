@@ -5,6 +5,7 @@ Faces are selected in edit mode, so what is done to selected faces is in the Fac
 
 import bpy
 
+from ..operators.blender.known_values import present
 from .tab import analyzed_mesh
 
 # In the order of the work; None is a line between two groups.
@@ -41,25 +42,34 @@ ENTRIES = (
 class EIGENPARTS_MT_object(bpy.types.Menu):
     bl_label = "Eigenparts"
 
-    def draw(self, context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context | None) -> None:
+        layout = present(self.layout)
         for entry in ENTRIES:
             if entry is None:
-                self.layout.separator()
+                layout.separator()
             else:
-                self.layout.operator(entry[0], icon=entry[1])
+                operator, icon = entry
+                # The stubs have no name for the type of icons.
+                layout.operator(operator, icon=icon)  # type: ignore[arg-type]
 
 
 def _draw_entry(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    menu.layout.separator()
-    menu.layout.menu("EIGENPARTS_MT_object")
+    layout = present(menu.layout)
+    layout.separator()
+    layout.menu("EIGENPARTS_MT_object")
 
 
 def _draw_on_faces(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     if analyzed_mesh(context) is not None:
-        menu.layout.separator()
-        menu.layout.operator("eigenparts.paint_part", icon="BRUSH_DATA")
-        menu.layout.operator("eigenparts.paint_part", text="New Part of Selected Faces", icon="ADD").new = True
+        layout = present(menu.layout)
+        layout.separator()
+        layout.operator("eigenparts.paint_part", icon="BRUSH_DATA")
+        new = layout.operator("eigenparts.paint_part", text="New Part of Selected Faces", icon="ADD")
+        present(new).new = True
 
+
+# Blender's menus, and what is drawn at their ends.
+EXTENDED = ((bpy.types.VIEW3D_MT_object, _draw_entry), (bpy.types.VIEW3D_MT_edit_mesh_faces, _draw_on_faces))
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((EIGENPARTS_MT_object,))
 
@@ -67,12 +77,13 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory((EIG
 def register() -> None:
     """Add the submenu to the Object menu, and what is done to faces to the Face menu."""
     _register_classes()
-    bpy.types.VIEW3D_MT_object.append(_draw_entry)
-    bpy.types.VIEW3D_MT_edit_mesh_faces.append(_draw_on_faces)
+    for menu, draw in EXTENDED:
+        # The stubs leave out that Blender hands over the menu before the context.
+        menu.append(draw)  # type: ignore[arg-type]
 
 
 def unregister() -> None:
     """Take them away."""
-    bpy.types.VIEW3D_MT_edit_mesh_faces.remove(_draw_on_faces)
-    bpy.types.VIEW3D_MT_object.remove(_draw_entry)
+    for menu, draw in reversed(EXTENDED):
+        menu.remove(draw)  # type: ignore[arg-type]
     _unregister_classes()

@@ -3,6 +3,14 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ..operators.blender.known_values import present
+from ..operators.blender.registered_settings import (
+    AnalysisSettings,
+    MeshSettings,
+    analysis_settings,
+    job_status,
+    mesh_settings,
+)
 from ..operators.mesh_state.schema import ABSENT, DAMAGED
 from ..operators.mesh_state.state import MeshState, is_analyzed, read
 from ..operators.messages import unexpected_errors
@@ -21,19 +29,19 @@ class EIGENPARTS_PT_analyze(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        status = context.window_manager.eigenparts
+        status = job_status(context)
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
         column.enabled = not status.is_running
-        _draw_field(column, context.scene.eigenparts, active_mesh(context))
+        _draw_field(column, analysis_settings(context), active_mesh(context))
         row = main_row(self, context)
         if row is not None:
             row.operator("eigenparts.analyze", icon="MOD_EXPLODE")
             row.operator("eigenparts.clear", text="", icon="TRASH")
         fault = unexpected_errors.last()
         if fault is not None:
-            draw_sentence(layout, fault.sentence, context.region.width)
+            draw_sentence(layout, fault.sentence, present(context.region).width)
             layout.operator("eigenparts.copy_report", icon="COPYDOWN")
 
 
@@ -49,8 +57,8 @@ class EIGENPARTS_PT_options(EigenpartsPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.enabled = not context.window_manager.eigenparts.is_running
-        settings = context.scene.eigenparts
+        layout.enabled = not job_status(context).is_running
+        settings = analysis_settings(context)
         layout.prop(settings, "order")
         layout.prop(settings, "boundary")
         layout.prop(settings, "shells")
@@ -68,7 +76,7 @@ class EIGENPARTS_PT_level(EigenpartsPanel, bpy.types.Panel):
             return
         state = read(mesh)
         if state.stored is None:
-            draw_hint(layout, FIRST_STEP, context.region.width)
+            draw_hint(layout, FIRST_STEP, present(context.region).width)
         else:
             layout.label(text=_origin_of_parts(state), translate=False)
         _draw_level(layout.column(), mesh)
@@ -84,11 +92,12 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
         if mesh is None:
             self.layout.label(text=NO_MESH)
             return
-        rows = {"rows": N_ROWS, "maxrows": N_ROWS}
-        settings = mesh.eigenparts
+        settings = mesh_settings(mesh)
         row = self.layout.row()
-        row.template_list("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row", **rows)
-        is_picking = context.window_manager.eigenparts.is_picking
+        row.template_list(
+            *("EIGENPARTS_UL_parts", "", settings, "rows", settings, "active_row"), rows=N_ROWS, maxrows=N_ROWS
+        )
+        is_picking = job_status(context).is_picking
         row.operator("eigenparts.pick_part", text="", icon="EYEDROPPER", depress=is_picking)
 
 
@@ -105,15 +114,15 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
             return
         column = self.layout.column()
         column.enabled = is_analyzed(mesh)
-        _draw_outputs(column, mesh.eigenparts)
+        _draw_outputs(column, mesh_settings(mesh))
         column = self.layout.column(align=True)
         cuts = column.row(align=True)
-        cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN").method = "INSERT"
-        cuts.operator("eigenparts.cut", text="Use Edges").method = "EXISTING"
+        present(cuts.operator("eigenparts.cut", icon="MOD_BOOLEAN")).method = "INSERT"
+        present(cuts.operator("eigenparts.cut", text="Use Edges")).method = "EXISTING"
         column.operator("eigenparts.separate", icon="MOD_EXPLODE")
 
 
-def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, mesh: bpy.types.Mesh | None) -> None:
+def _draw_field(layout: bpy.types.UILayout, settings: AnalysisSettings, mesh: bpy.types.Mesh | None) -> None:
     layout.prop(settings, "field")
     if settings.field == "EIGENFUNCTION":
         layout.prop(settings, "eigenfunction")
@@ -125,20 +134,21 @@ def _draw_field(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, m
 
 def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
     layout.enabled = is_analyzed(mesh)
-    layout.row().prop(mesh.eigenparts, "mode", expand=True)
+    settings = mesh_settings(mesh)
+    layout.row().prop(settings, "mode", expand=True)
     column = layout.column(align=True)
-    column.prop(mesh.eigenparts, "level")
-    column.prop(mesh.eigenparts, "n_parts")
+    column.prop(settings, "level")
+    column.prop(settings, "n_parts")
     column.operator("eigenparts.segment", text="Default Level", icon="LOOP_BACK")
 
 
 def _draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, state: MeshState) -> None:
     """Say what is wrong with what the mesh remembers, and what the last change met."""
-    status = context.window_manager.eigenparts
+    status = job_status(context)
     if state.stored is not None and not state.is_readable:
-        draw_sentence(layout, DAMAGED, context.region.width)
+        draw_sentence(layout, DAMAGED, present(context.region).width)
     if status.problem and status.problem_of == state.mesh.name_full:
-        draw_sentence(layout, status.problem, context.region.width)
+        draw_sentence(layout, status.problem, present(context.region).width)
 
 
 def _origin_of_parts(state: MeshState) -> str:
@@ -152,7 +162,7 @@ def _origin_of_parts(state: MeshState) -> str:
     )
 
 
-def _draw_outputs(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+def _draw_outputs(column: bpy.types.UILayout, settings: MeshSettings) -> None:
     for output in OUTPUTS.values():
         column.prop(settings, output.property_name)
         for option in output.options:

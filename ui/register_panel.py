@@ -3,6 +3,7 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ..operators.blender.known_values import present
 from ..operators.mesh_state.references import registered_objects
 from ..operators.mesh_state.registration_record import SURE, Match
 from .tab import EigenpartsPanel, draw_direction, main_row
@@ -20,13 +21,14 @@ class EIGENPARTS_PT_register(EigenpartsPanel, bpy.types.Panel):
         draw_direction(layout, context)
         row = main_row(self, context)
         if row is not None:
-            row.operator("eigenparts.register_selected", icon="LINKED").mirrored = False
-            row.operator("eigenparts.register_selected", text="", icon="MOD_MIRROR").mirrored = True
+            present(row.operator("eigenparts.register_selected", icon="LINKED")).mirrored = False
+            present(row.operator("eigenparts.register_selected", text="", icon="MOD_MIRROR")).mirrored = True
         for obj, state in registered_objects(context):
+            match = present(state.match)
             header, body = layout.panel(f"eigenparts_match_{obj.session_uid}", default_closed=True)
-            _draw_confidence(header, obj.name, state.match)
+            _draw_confidence(header, obj.name, match)
             if body is not None:
-                _draw_match(body, obj.name, state.match)
+                _draw_match(body, obj.name, match)
 
 
 def _draw_confidence(layout: bpy.types.UILayout, name: str, match: Match) -> None:
@@ -39,9 +41,8 @@ def _draw_confidence(layout: bpy.types.UILayout, name: str, match: Match) -> Non
         text = translated("{number} of {all}").format(number=match.alternative + 1, all=match.n_alternatives + 1)
         following = layout.row()
         following.alignment = "RIGHT"
-        following.operator(
-            "eigenparts.next_alternative", text=text, icon="FILE_REFRESH", translate=False
-        ).object_name = name
+        button = following.operator("eigenparts.next_alternative", text=text, icon="FILE_REFRESH", translate=False)
+        present(button).object_name = name
 
 
 def _draw_match(layout: bpy.types.UILayout, name: str, match: Match) -> None:
@@ -50,7 +51,7 @@ def _draw_match(layout: bpy.types.UILayout, name: str, match: Match) -> None:
     grid = layout.grid_flow(row_major=True, columns=FUNCTIONS_IN_A_ROW, even_columns=True, align=True)
     for number, (place, sign) in enumerate(zip(match.order, match.signs, strict=True), start=1):
         text = f"{number}: {'-' if sign < 0 else '+'}{place}"
-        flip = grid.operator("eigenparts.flip_function", text=text, translate=False)
+        flip = present(grid.operator("eigenparts.flip_function", text=text, translate=False))
         flip.object_name, flip.number = name, number
     if match.by_diagrams:
         layout.label(text=_told_by_diagrams(match.by_diagrams), translate=False)

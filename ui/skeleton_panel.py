@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..operators.blender.registered_settings import skeleton_settings
 from .tab import EigenpartsPanel, analyzed_mesh, draw_missing_analysis, main_row
 
 
@@ -21,7 +22,7 @@ class EIGENPARTS_PT_skeleton(EigenpartsPanel, bpy.types.Panel):
             return
         layout.use_property_split = True
         layout.use_property_decorate = False
-        settings = context.scene.eigenparts_skeleton
+        settings = skeleton_settings(context)
         layout.prop(settings, "weights")
         layout.prop(settings, "bones_in_limbs")
         row = main_row(self, context)

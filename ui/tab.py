@@ -3,6 +3,9 @@
 import bpy
 from bpy.app.translations import pgettext_iface as translated
 
+from ..operators.blender.known_values import mesh_of, present
+from ..operators.blender.mixins import PanelMixin
+from ..operators.blender.registered_settings import job_status
 from ..operators.mesh_data.selected_meshes import other_meshes
 from ..operators.mesh_state.schema import ABSENT
 from ..operators.mesh_state.state import is_analyzed
@@ -24,7 +27,7 @@ PANEL_OF_JOB = {
 ANALYZE_PANEL = "EIGENPARTS_PT_analyze"
 
 
-class EigenpartsPanel:
+class EigenpartsPanel(PanelMixin):
     """A panel of the tab; ``bl_order`` puts them in the order of the work."""
 
     bl_space_type = "VIEW_3D"
@@ -34,7 +37,7 @@ class EigenpartsPanel:
 
 def active_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
     """Return the mesh of the active object, if it is one."""
-    return context.object.data if context.object is not None and context.object.type == "MESH" else None
+    return mesh_of(context.object) if context.object is not None and context.object.type == "MESH" else None
 
 
 def analyzed_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
@@ -48,11 +51,11 @@ def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context
     layout.label(text=NO_MESH if active_mesh(context) is None else ABSENT)
 
 
-def main_row(panel: bpy.types.Panel, context: bpy.types.Context) -> bpy.types.UILayout | None:
+def main_row(panel: EigenpartsPanel, context: bpy.types.Context) -> bpy.types.UILayout | None:
     """Return the row of the button a panel is there for; None while its job runs, whose progress is drawn there."""
     row = panel.layout.row(align=True)
     row.scale_y = MAIN_BUTTON
-    status = context.window_manager.eigenparts
+    status = job_status(context)
     if not status.is_running or PANEL_OF_JOB.get(status.job, ANALYZE_PANEL) != panel.bl_idname:
         return row
     row.progress(factor=status.fraction, text=status.text)
@@ -63,7 +66,7 @@ def main_row(panel: bpy.types.Panel, context: bpy.types.Context) -> bpy.types.UI
 def draw_direction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Say from which mesh to how many others something goes."""
     source, others = context.object, other_meshes(context)
-    if not others or active_mesh(context) is None:
+    if not others or source is None or source.type != "MESH":
         layout.label(text="Select meshes, the source last", icon="INFO")
         return
     text = translated("{source} to {target}") if len(others) == 1 else translated("{source} to {count} others")
@@ -80,7 +83,7 @@ def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None
 def draw_hint(layout: bpy.types.UILayout, sentence: str, width: int) -> None:
     """Draw a sentence in as many lines as the sidebar needs."""
     # Without a window the interface has no scale.
-    n_letters = max(20, int(width / (7 * (bpy.context.preferences.system.ui_scale or 1))))
+    n_letters = max(20, int(width / (7 * (present(bpy.context.preferences).system.ui_scale or 1))))
     column = layout.column(align=True)
     line = ""
     for word in in_language(sentence, translated).split():

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..operators.blender.registered_settings import transfer_settings
 from ..operators.mesh_data.selected_meshes import other_meshes
 from .tab import EigenpartsPanel, draw_direction, main_row
 from .transfer_presets import EIGENPARTS_PT_transfer_presets
@@ -17,7 +18,7 @@ class EIGENPARTS_PT_transfer(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        options = context.scene.eigenparts_transfer
+        options = transfer_settings(context)
         draw_direction(layout, context)
         grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
         grid.prop(options, "layers")
@@ -42,7 +43,7 @@ class EIGENPARTS_PT_transfer_options(EigenpartsPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        options, others = context.scene.eigenparts_transfer, other_meshes(context)
+        options, others = transfer_settings(context), other_meshes(context)
         layout.prop(options, "mirrored")
         layout.prop(options, "use_modifiers")
         layout.prop(options, "factor")

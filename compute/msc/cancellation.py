@@ -33,10 +33,15 @@ def extended_lines(full: Separatrices, pairing: Pairing, n_cancelled: int) -> Se
     for extremum, saddle, is_maximum in itertools.islice(rows, n_cancelled):
         growing.cancel(extremum, saddle, is_maximum)
     kept = np.flatnonzero(np.isin(full.saddle, pairing.surviving_saddles(n_cancelled)) & ~growing.is_hidden)
-    ways = [growing.way(line) for line in kept.tolist()]
-    ends = np.array([end for _, end in ways], dtype=np.int64)
-    lines, paths = (tuple(_in_one(pieces, stretches) for stretches, _ in ways) for pieces in (full.lines, full.paths))
-    return Separatrices(full.saddle[kept], ends, full.rises[kept], lines, paths)
+    routes = [growing.route(line) for line in kept.tolist()]
+    lines, paths = (tuple(_in_one(pieces, stretches) for stretches, _ in routes) for pieces in (full.lines, full.paths))
+    return Separatrices(
+        saddle=full.saddle[kept],
+        extremum=np.array([end for _, end in routes], dtype=np.int64),
+        rises=full.rises[kept],
+        lines=lines,
+        paths=paths,
+    )
 
 
 class _Lines:
@@ -53,16 +58,16 @@ class _Lines:
     def cancel(self, extremum: int, saddle: int, is_maximum: bool) -> None:
         """Lead every line that ends at an extremum on, back to the saddle and to the extremum on its other side."""
         lines = self._of_saddle[saddle, is_maximum]
-        ways = [self.way(line) for line in lines]
-        here = [place for place, (_, end) in enumerate(ways) if end == extremum]
+        routes = [self.route(line) for line in lines]
         # The pair is the least persistent one that is left, so one line ends here and one at an older extremum.
-        stretches, end = next(way for way in ways if way[1] != extremum)
-        self.is_hidden[lines[here[0]]] = True
-        back = [(line, not is_back) for line, is_back in reversed(ways[here[0]][0])]
+        cancelled = next(place for place, (_, end) in enumerate(routes) if end == extremum)
+        stretches, end = next(route for route in routes if route[1] != extremum)
+        self.is_hidden[lines[cancelled]] = True
+        back = [(line, not is_back) for line, is_back in reversed(routes[cancelled][0])]
         self._beyond[extremum] = back + stretches, end
 
-    def way(self, line: int) -> tuple[list[Stretch], int]:
-        """Return the stretches of a line with all that was added to it, and where it ends now."""
+    def route(self, line: int) -> tuple[list[Stretch], int]:
+        """Return the stretches of a line with all that was added to it, and the extremum at which it ends now."""
         stretches, end = [(line, False)], self._extremum[line]
         while end in self._beyond:
             further, end = self._beyond[end]

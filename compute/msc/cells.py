@@ -1,4 +1,4 @@
-"""The cells of the Morse-Smale complex: where everything flows from one minimum to one maximum."""
+"""The cells of the Morse-Smale complex, in which everything flows from one minimum to one maximum."""
 
 from dataclasses import dataclass
 
@@ -37,8 +37,8 @@ def cells_of(links: Links, minimum: Ints, maximum: Ints, paths: tuple[Ints, ...]
     ----------
     links : Links
     minimum, maximum : (m,) int64
-        Where the steepest paths from each triangle end. Next to a separatrix these may differ from those of the cell,
-        which has the ends of most of its triangles.
+        The net vertices at which the steepest paths from each triangle end. Next to a separatrix these may differ from
+        those of the cell, which has the ends of most of its triangles.
     paths : tuple of (q,) int64
         Net vertices of each separatrix.
     """
@@ -63,7 +63,7 @@ def _most_frequent(cell: Ints, ends: Ints, n_cells: int, n_vertices: int) -> Int
 
 
 def _edges_of_paths(links: Links, paths: tuple[Ints, ...]) -> Bools:
-    """Return which edges of the net are on paths."""
+    """Mask of the edges of the net that are on paths."""
     starts, stops = (
         np.concatenate([path[part] for path in paths] or [np.empty(0, dtype=np.int64)])
         for part in (slice(None, -1), slice(1, None))

@@ -72,7 +72,7 @@ def cocycles_of(links: Links) -> Cocycles:
     combinations, n_independent = _balanced_combinations(edges, generators, end, cotree)
     edge, cocycle = _combined(edge, generator, combinations)
     betti = (n_components, len(combinations), cotree.n_closed - n_independent)
-    return Cocycles(betti, edge, cocycle, edges, links.n_vertices)
+    return Cocycles(betti=betti, edge=edge, cocycle=cocycle, edges=edges, n_vertices=links.n_vertices)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ class _Cotree:
 
 
 def _vertex_tree(links: Links) -> tuple[Bools, int]:
-    """Return which edges are in a spanning forest, and of how many trees it is made."""
+    """Return the mask of the edges that are in a spanning forest, and the number of its trees."""
     ends, n = links.edges.vertices.astype(np.int32), links.n_vertices
     # Each edge's number is its weight, so that the result says which edges were taken.
     numbers = np.arange(1, len(ends) + 1, dtype=np.float64)
@@ -195,9 +195,9 @@ def _combined(edge: Ints, generator: Ints, combinations: list[list[int]]) -> tup
     edge, starts = edge[order], np.searchsorted(generator[order], np.arange(generator.max(initial=-1) + 2))
     marked = []
     for combination in combinations:
-        found, count = np.unique(
+        edges, count = np.unique(
             np.concatenate([edge[starts[number] : starts[number + 1]] for number in combination]), return_counts=True
         )
-        marked.append(found[count % 2 == 1])
+        marked.append(edges[count % 2 == 1])
     cocycle = np.repeat(np.arange(len(marked)), [len(edges) for edges in marked])
     return np.concatenate([*marked, np.empty(0, dtype=np.int64)]), cocycle

@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..surface.mesh import Bools, Floats, Ints
-from .links import Links
+from .ranked_net import RankedNet
 
 
 class Kind(IntEnum):
@@ -69,53 +69,23 @@ class Sectors:
     lowest: Ints
 
 
-def rank_vertices(values: Floats) -> Ints:
-    """Return the place of each vertex in rising order; equal values are ordered by index."""
-    order = np.argsort(values)
-    rising = values[order]
-    # A stable sort takes several times as long, and is needed for equal values only.
-    if (rising[1:] == rising[:-1]).any():
-        order = np.argsort(values, kind="stable")
-    rank = np.empty(len(values), dtype=np.int64)
-    rank[order] = np.arange(len(values))
-    return rank
-
-
-def vertices_by_rank(rank: Ints) -> Ints:
-    """Return the vertex at each rank."""
-    vertex = np.empty(len(rank), dtype=np.int64)
-    vertex[rank] = np.arange(len(rank))
-    return vertex
-
-
-def ranked_corners(rank: Ints, links: Links) -> tuple[Ints, Ints, Ints]:
-    """Return the ranks of the lowest, middle and highest corner of every triangle."""
-    first, second, third = rank[links.triangles.T]
-    low, high = np.minimum(first, second), np.maximum(first, second)
-    middle = np.minimum(high, third)
-    return np.minimum(low, middle), np.maximum(low, middle), np.maximum(high, third)
-
-
-def critical_points(values: Floats, rank: Ints, links: Links, candidates: Ints | None = None) -> CriticalPoints:
+def critical_points(values: Floats, net: RankedNet) -> CriticalPoints:
     """Classify every vertex of the net.
 
     Parameters
     ----------
     values : (n,) float64
-    rank : (n,) int64
-        Strict order of the vertices, from :func:`rank_vertices`.
-    links : Links
-    candidates : (c,) int64, optional
-        The vertices that are perhaps critical, if they are known.
+    net : RankedNet
+        Ordered by the values.
 
     References
     ----------
     .. [1] Reuter, IJCV 2010, section 4.2; the index on complexes that are no closed manifolds is the method page's.
     """
-    candidates = perhaps_critical(rank, links) if candidates is None else candidates
-    nodes, n_link_edges = _lower_link(candidates, rank, links)
-    n_nodes = np.bincount(nodes.vertex, minlength=links.n_vertices)[candidates]
-    n_components = np.bincount(nodes.vertex[nodes.is_first], minlength=links.n_vertices)[candidates]
+    candidates = net.candidates
+    nodes, n_link_edges = _lower_link(candidates, net)
+    n_nodes = np.bincount(nodes.vertex, minlength=net.n_vertices)[candidates]
+    n_components = np.bincount(nodes.vertex[nodes.is_first], minlength=net.n_vertices)[candidates]
     n_cycles = n_link_edges[candidates] - n_nodes + n_components
     multiplicity = np.stack([n_components == 0, np.maximum(n_components - 1, 0), n_cycles], axis=1).astype(np.int64)
     row, kind = np.nonzero(multiplicity)
@@ -123,29 +93,18 @@ def critical_points(values: Floats, rank: Ints, links: Links, candidates: Ints |
     return CriticalPoints(vertex, kind, multiplicity[row, kind], values[vertex])
 
 
-def perhaps_critical(rank: Ints, links: Links) -> Ints:
-    """Return the vertices that are perhaps critical: all but those whose closed link changes side just twice.
-
-    They are the same for both directions of the sweep.
-    """
-    _, middle, _ = ranked_corners(rank, links)
-    # A link edge changes side where its triangle has the vertex as its middle corner.
-    n_changes = np.bincount(middle, minlength=links.n_vertices)[rank]
-    return np.flatnonzero(((n_changes != 2) | ~links.is_plain) & (links.n_triangles > 0))
-
-
-def merging_sectors(rank: Ints, links: Links, candidates: Ints) -> Sectors:
+def merging_sectors(net: RankedNet) -> Sectors:
     """Return the lower-link components of those vertices that have two or more, in the order of a rising sweep."""
-    nodes, _ = _lower_link(candidates, rank, links)
+    nodes, _ = _lower_link(net.candidates, net)
     vertex, lowest = nodes.vertex[nodes.is_first], nodes.neighbour[nodes.is_first]
-    merges = np.bincount(vertex, minlength=links.n_vertices)[vertex] > 1
-    order = np.argsort(rank[vertex[merges]], kind="stable")
+    merges = np.bincount(vertex, minlength=net.n_vertices)[vertex] > 1
+    order = np.argsort(net.rank[vertex[merges]], kind="stable")
     return Sectors(vertex[merges][order], lowest[merges][order])
 
 
-def sector_nodes(vertices: Ints, rank: Ints, links: Links) -> tuple[Ints, Ints, Ints]:
+def sector_nodes(vertices: Ints, net: RankedNet) -> tuple[Ints, Ints, Ints]:
     """Return the lower neighbours of some vertices, as rows (vertex, neighbour, number of the sector)."""
-    nodes, _ = _lower_link(vertices, rank, links)
+    nodes, _ = _lower_link(vertices, net)
     return nodes.vertex, nodes.neighbour, nodes.component
 
 
@@ -159,15 +118,15 @@ class _LinkNodes:
     is_first: Bools
 
 
-def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, Ints]:
+def _lower_link(vertices: Ints, net: RankedNet) -> tuple[_LinkNodes, Ints]:
     """Return the nodes of the lower links with their components, and the number of link edges by vertex."""
-    wanted = np.zeros(links.n_vertices, dtype=bool)
+    n, rank, triangles = net.n_vertices, net.rank, net.links.triangles
+    wanted = np.zeros(n, dtype=bool)
     wanted[vertices] = True
-    triangle, place = np.nonzero(wanted[links.triangles])
-    corner, ahead, behind = (links.triangles[triangle, (place + shift) % 3] for shift in range(3))
+    triangle, place = np.nonzero(wanted[triangles])
+    corner, ahead, behind = (triangles[triangle, (place + shift) % 3] for shift in range(3))
     low_ahead, low_behind = rank[ahead] < rank[corner], rank[behind] < rank[corner]
     # A node is a pair (vertex, lower neighbour); its key sorts by vertex, then by height.
-    n = links.n_vertices
     key_ahead, key_behind = corner * n + rank[ahead], corner * n + rank[behind]
     keys = np.unique(np.concatenate([key_ahead[low_ahead], key_behind[low_behind]]))
     is_edge = low_ahead & low_behind
@@ -176,6 +135,5 @@ def _lower_link(vertices: Ints, rank: Ints, links: Links) -> tuple[_LinkNodes, I
     _, component = connected_components(joined, directed=False)
     is_first = np.zeros(len(keys), dtype=bool)
     is_first[np.unique(component, return_index=True)[1]] = True
-    vertex_at_rank = vertices_by_rank(rank)
-    nodes = _LinkNodes(keys // n, vertex_at_rank[keys % n], component, is_first)
+    nodes = _LinkNodes(keys // n, net.vertex_at_rank[keys % n], component, is_first)
     return nodes, np.bincount(corner[is_edge], minlength=n)

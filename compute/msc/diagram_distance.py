@@ -1,4 +1,4 @@
-"""How far two persistence diagrams are apart."""
+"""Distances of two persistence diagrams."""
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -42,9 +42,9 @@ def diagram_distance(first: PersistenceDiagram, second: PersistenceDiagram, metr
 
 def hausdorff_distance(first: Floats, second: Floats) -> float:
     """Return the largest distance of a point from the other diagram, (n, 2) and (m, 2)."""
-    there = np.minimum(_to_nearest(first, second), _to_diagonal(first))
-    back = np.minimum(_to_nearest(second, first), _to_diagonal(second))
-    return float(max(there.max(initial=0.0), back.max(initial=0.0)))
+    of_first = np.minimum(_to_nearest(first, second), _to_diagonal(first))
+    of_second = np.minimum(_to_nearest(second, first), _to_diagonal(second))
+    return float(max(of_first.max(initial=0.0), of_second.max(initial=0.0)))
 
 
 def bottleneck_distance(first: Floats, second: Floats) -> float:

@@ -1,44 +1,44 @@
-"""Integral lines of a piecewise linear field: the ways of steepest ascent, through triangles and along edges."""
+"""Integral lines of a piecewise linear field: the paths of steepest ascent, through triangles and along edges."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..surface.mesh import Bools, Floats, Ints
-from .links import Links
+from .ranked_net import RankedNet
 
 # A line that meets an edge this close to one of its ends, as a fraction of the edge, goes through the vertex.
 AT_VERTEX = 1e-9
+# In the place of a corner: the exit is an edge.
+ALONG_EDGE = -1
 # Lines longer than this many steps, in units of the square root of the number of triangles, are given up.
 LONGEST_LINE = 30
 
 
 @dataclass(frozen=True, eq=False)
 class Ascent:
-    """A field as lines see it.
+    """The gradient of a field, which lines ascend along.
 
     Attributes
     ----------
-    links : Links
+    net : RankedNet
+        Ordered by value.
     positions : (n, 3) float64
     values : (n,) float64
-        The field; of its negative for lines that descend.
-    rank : (n,) int64
-        Strict order of the vertices by value.
+        The field; its negative for lines that descend.
     rates : (m, 3) float64
         How the barycentric coordinates change along the gradient of each triangle.
     """
 
-    links: Links
+    net: RankedNet
     positions: Floats
     values: Floats
-    rank: Ints
     rates: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class Exits:
-    """Where a line goes on from a vertex: across a triangle or along an edge; r rows.
+    """The ways out of vertices, across a triangle or along an edge; r rows.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Exits:
     slope : (r,) float64
         Rise of the field per length.
     corner : (r,) int64
-        3 t + k for a way across triangle t from its corner k; -1 for a way along an edge.
+        3 t + k for an exit across triangle t from its corner k; ``ALONG_EDGE`` for one along an edge.
     neighbour : (r,) int64
         The vertex at the other end of the edge; for a triangle, the higher one of the opposite edge.
     """
@@ -57,37 +57,39 @@ class Exits:
     neighbour: Ints
 
 
-def ascent_of(links: Links, positions: Floats, values: Floats, rank: Ints) -> Ascent:
-    """Return a field in the form that lines are traced on."""
-    a, b, c = positions[links.triangles].swapaxes(0, 1)
+def ascent_of(net: RankedNet, positions: Floats, values: Floats) -> Ascent:
+    """Return the gradient of a field, in the form that lines are traced on."""
+    triangles = net.links.triangles
+    a, b, c = positions[triangles].swapaxes(0, 1)
     # Each side is opposite to the corner of its number; the gradient of a barycentric coordinate is perpendicular
     # to that side, and products of perpendiculars are products of the sides.
     sides = np.stack([c - b, a - c, b - a], axis=1)
     double_area_squared = (np.cross(sides[:, 0], sides[:, 1]) ** 2).sum(axis=1)
     # Rates relative to the first corner do not lose the differences of a field far from zero.
-    rise = values[links.triangles] - values[links.triangles[:, :1]]
+    rise = values[triangles] - values[triangles[:, :1]]
     drift = np.einsum("tkx,tk->tx", sides, rise)
     with np.errstate(divide="ignore", invalid="ignore"):
         rates = np.einsum("tkx,tx->tk", sides, drift) / double_area_squared[:, None]
-    return Ascent(links, positions, values, rank, np.where(np.isfinite(rates), rates, 0.0))
+    return Ascent(net, positions, values, np.where(np.isfinite(rates), rates, 0.0))
 
 
 def exits_of(ascent: Ascent) -> Exits:
-    """Return every way up from every vertex."""
-    corners, rates = ascent.links.triangles, ascent.rates
-    slope = np.sqrt(np.maximum(np.einsum("tk,tk->t", rates, ascent.values[corners] - ascent.values[corners[:, :1]]), 0))
+    """Return every exit that leads up from a vertex."""
+    corners, rank = ascent.net.links.triangles, ascent.net.rank
+    rates, values = ascent.rates, ascent.values
+    slope = np.sqrt(np.maximum(np.einsum("tk,tk->t", rates, values[corners] - values[corners[:, :1]]), 0))
     ahead, behind = (np.roll(rates, -shift, axis=1) for shift in (1, 2))
     triangle, place = np.nonzero((ahead > 0) & (behind > 0))
     ends = np.stack([corners[triangle, (place + shift) % 3] for shift in (1, 2)])
-    higher = np.where(ascent.rank[ends[0]] > ascent.rank[ends[1]], ends[0], ends[1])
-    sides = ascent.links.edges.vertices
-    low, high = np.where((ascent.rank[sides[:, 0]] < ascent.rank[sides[:, 1]])[:, None], sides, sides[:, ::-1]).T
+    higher = np.where(rank[ends[0]] > rank[ends[1]], ends[0], ends[1])
+    sides = ascent.net.links.edges.vertices
+    low, high = np.where((rank[sides[:, 0]] < rank[sides[:, 1]])[:, None], sides, sides[:, ::-1]).T
     length = np.linalg.norm(ascent.positions[high] - ascent.positions[low], axis=1)
-    along = (ascent.values[high] - ascent.values[low]) / np.maximum(length, np.finfo(float).tiny)
+    along = (values[high] - values[low]) / np.maximum(length, np.finfo(float).tiny)
     return Exits(
         np.append(corners[triangle, place], low),
         np.append(slope[triangle], along),
-        np.append(3 * triangle + place, np.full(len(low), -1)),
+        np.append(3 * triangle + place, np.full(len(low), ALONG_EDGE)),
         np.append(higher, high),
     )
 
@@ -123,26 +125,26 @@ def trace(ascent: Ascent, exits: Exits, starts: Ints) -> tuple[list[Floats], Int
     ----------
     .. [1] Reuter, IJCV 2010, section 4.2.
     """
-    best = steepest_exits(exits, exits.vertex, ascent.links.n_vertices)
+    best = steepest_exits(exits, exits.vertex, ascent.net.links.n_vertices)
     end = np.full(len(starts), -1)
     steps = [(np.arange(len(starts)), ascent.positions[exits.vertex[starts]])]
-    here = _leave(ascent, exits, starts, np.arange(len(starts)))
-    for _ in range(LONGEST_LINE * int(len(ascent.links.triangles) ** 0.5 + 10)):
-        steps.append((here.line, _places(ascent, here)))
-        going_on = best[here.vertex]
-        stops = (here.vertex >= 0) & (going_on < 0)
-        end[here.line[stops]] = here.vertex[stops]
-        at_vertex = (here.vertex >= 0) & ~stops
-        if not len(here.line) or stops.all():
+    heads = _leave(ascent, exits, starts, np.arange(len(starts)))
+    for _ in range(LONGEST_LINE * int(len(ascent.net.links.triangles) ** 0.5 + 10)):
+        steps.append((heads.line, _places(ascent, heads)))
+        going_on = best[heads.vertex]
+        stops = (heads.vertex >= 0) & (going_on < 0)
+        end[heads.line[stops]] = heads.vertex[stops]
+        at_vertex = (heads.vertex >= 0) & ~stops
+        if not len(heads.line) or stops.all():
             break
-        leaving = _leave(ascent, exits, going_on[at_vertex], here.line[at_vertex])
-        here = _joined(leaving, _cross(ascent, _chosen(here, here.vertex < 0)))
+        leaving = _leave(ascent, exits, going_on[at_vertex], heads.line[at_vertex])
+        heads = _joined(leaving, _cross(ascent, _chosen(heads, heads.vertex < 0)))
     return _polylines(steps, len(starts)), end
 
 
 @dataclass(frozen=True, eq=False)
 class _Heads:
-    """Where lines have come to: a vertex, or a point on the side opposite to a corner (3 t + k) of a triangle.
+    """The heads of growing lines: at a vertex, or on the side opposite to a corner (3 t + k) of a triangle.
 
     The point divides that side, from corner k + 1 to corner k + 2, at ``fraction``.
     """
@@ -174,13 +176,13 @@ def _leave(ascent: Ascent, exits: Exits, taken: Ints, line: Ints) -> _Heads:
 
 def _cross(ascent: Ascent, heads: _Heads) -> _Heads:
     """Go on from points inside edges, across the next triangle or, where its gradient points back, along the edge."""
-    corners = ascent.links.triangles.ravel()
+    corners = ascent.net.links.triangles.ravel()
     side = _next_corner(heads.corner, 1)
-    across = ascent.links.opposite[side]
+    across = ascent.net.links.opposite[side]
     start, stop = corners[side], corners[_next_corner(side, 1)]
     entry = _next_corner(across, 2)
     goes_in = (across >= 0) & (ascent.rates.ravel()[entry] > 0)
-    higher = np.where(ascent.rank[start] > ascent.rank[stop], start, stop)
+    higher = np.where(ascent.net.rank[start] > ascent.net.rank[stop], start, stop)
     along = _Heads(heads.line, higher, heads.corner, heads.fraction)
     # The neighbour's side runs the other way, unless the winding changes here.
     fraction = np.where(corners[across] == start, heads.fraction, 1 - heads.fraction)
@@ -204,7 +206,7 @@ def _pass_through(ascent: Ascent, line: Ints, entry: Ints, fraction: Floats) -> 
 
 def _snapped(ascent: Ascent, heads: _Heads) -> _Heads:
     """Put points that are next to the end of their side onto that vertex."""
-    corners = ascent.links.triangles.ravel()
+    corners = ascent.net.links.triangles.ravel()
     on_side = heads.vertex < 0
     at_start, at_stop = on_side & (heads.fraction < AT_VERTEX), on_side & (heads.fraction > 1 - AT_VERTEX)
     vertex = np.where(at_start, corners[_next_corner(heads.corner, 1)], heads.vertex)
@@ -218,7 +220,7 @@ def _next_corner(corner: Ints, shift: int) -> Ints:
 
 
 def _places(ascent: Ascent, heads: _Heads) -> Floats:
-    corners = ascent.links.triangles.ravel()
+    corners = ascent.net.links.triangles.ravel()
     start, stop = (ascent.positions[corners[_next_corner(heads.corner, shift)]] for shift in (1, 2))
     on_side = start + heads.fraction[:, None] * (stop - start)
     return np.where((heads.vertex >= 0)[:, None], ascent.positions[heads.vertex], on_side)

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..surface.mesh import Ints
-from .critical_points import Sectors, merging_sectors, perhaps_critical, ranked_corners, vertices_by_rank
-from .links import Links
+from .critical_points import Sectors, merging_sectors
+from .ranked_net import RankedNet
 
 
 @dataclass(frozen=True, eq=False)
 class MergeTree:
-    """All merges of a sweep; a component carries the name of its oldest minimum.
+    """The merges of a sweep; a component carries the name of its oldest minimum.
 
     Attributes
     ----------
@@ -43,35 +43,35 @@ class MergeTree:
     sectors: Sectors
 
 
-def merge_tree(rank: Ints, links: Links, candidates: Ints | None = None) -> MergeTree:
-    """Sweep the net upwards and pair each minimum with the saddle that ends it (0-dimensional persistence).
-
-    Parameters
-    ----------
-    rank : (n,) int64
-    links : Links
-    candidates : (c,) int64, optional
-        The vertices that are perhaps critical, if they are known.
-    """
-    descent = _descent(rank, links)
+def merge_tree(net: RankedNet) -> MergeTree:
+    """Sweep a net upwards and pair each minimum with the saddle that ends it (0-dimensional persistence)."""
+    descent = _descent(net)
     basin = ends_of_paths(descent)
-    sectors = merging_sectors(rank, links, perhaps_critical(rank, links) if candidates is None else candidates)
-    extremum, saddle, elder = _elder_rule(rank, sectors, basin)
-    minima = links.vertex[basin[links.vertex] == links.vertex]
-    roots = minima[~np.isin(minima, extremum)]
-    return MergeTree(rank, descent, basin, extremum, saddle, elder, roots, sectors)
+    sectors = merging_sectors(net)
+    extremum, saddle, elder = _elder_rule(net, sectors, basin)
+    minima = net.links.vertex[basin[net.links.vertex] == net.links.vertex]
+    return MergeTree(
+        rank=net.rank,
+        descent=descent,
+        basin=basin,
+        extremum=extremum,
+        saddle=saddle,
+        elder=elder,
+        roots=minima[~np.isin(minima, extremum)],
+        sectors=sectors,
+    )
 
 
-def _descent(rank: Ints, links: Links) -> Ints:
+def _descent(net: RankedNet) -> Ints:
     """Return a lower neighbour of each vertex that has one.
 
     Any will do: a path down from a vertex stays in the component of the sublevel set that it starts in.
     """
-    low, middle, high = ranked_corners(rank, links)
-    target = np.arange(links.n_vertices)
+    low, middle, high = net.corners
+    target = np.arange(net.n_vertices)
     target[high] = middle
     target[middle] = low
-    return vertices_by_rank(rank)[target][rank]
+    return net.vertex_at_rank[target][net.rank]
 
 
 def ends_of_paths(target: Ints) -> Ints:
@@ -81,28 +81,31 @@ def ends_of_paths(target: Ints) -> Ints:
     return target
 
 
-def _elder_rule(rank: Ints, sectors: Sectors, basin: Ints) -> tuple[Ints, Ints, Ints]:
+def _elder_rule(net: RankedNet, sectors: Sectors, basin: Ints) -> tuple[Ints, Ints, Ints]:
     """Join the components at each saddle; the younger one (with the higher minimum) is paired and ends."""
-    minimum, label = np.unique(rank[basin[sectors.lowest]], return_inverse=True)
-    minimum = vertices_by_rank(rank)[minimum]
+    minimum, label = np.unique(net.rank[basin[sectors.lowest]], return_inverse=True)
+    minimum = net.vertex_at_rank[minimum]
     # Numbered from the lowest up, so the larger number is the younger one; a component has the number of its oldest.
     older = list(range(len(minimum)))
-    young, old, at = [], [], []
+    ended, going_on, rows = [], [], []
     previous_saddle, first = -1, -1
-    for row, (saddle, there) in enumerate(zip(sectors.vertex.tolist(), label.reshape(-1).tolist(), strict=True)):
+    for row, (saddle, component) in enumerate(zip(sectors.vertex.tolist(), label.reshape(-1).tolist(), strict=True)):
         if saddle != previous_saddle:
-            previous_saddle, first = saddle, there
+            previous_saddle, first = saddle, component
             continue
-        here = first
-        while here != older[here]:
-            older[here] = here = older[older[here]]
-        while there != older[there]:
-            older[there] = there = older[older[there]]
-        if here != there:
-            here, there = min(here, there), max(here, there)
-            older[there] = here
-            young.append(there)
-            old.append(here)
-            at.append(row)
-    rows = np.array(at, dtype=np.int64)
-    return minimum[np.array(young, dtype=np.int64)], sectors.vertex[rows], minimum[np.array(old, dtype=np.int64)]
+        one, other = _oldest(first, older), _oldest(component, older)
+        if one != other:
+            elder, younger = min(one, other), max(one, other)
+            older[younger] = elder
+            ended.append(younger)
+            going_on.append(elder)
+            rows.append(row)
+    pairs = np.array([ended, going_on, rows], dtype=np.int64).reshape(3, -1)
+    return minimum[pairs[0]], sectors.vertex[pairs[2]], minimum[pairs[1]]
+
+
+def _oldest(component: int, older: list[int]) -> int:
+    """Return the oldest component that one has joined, and shorten the path there by half."""
+    while component != older[component]:
+        older[component] = component = older[older[component]]
+    return component

@@ -10,13 +10,14 @@ from ..surface.ties import ROUNDING
 from .cancellation import extended_lines
 from .cells import Cells, cells_of
 from .cohomology import cocycles_of
-from .critical_points import CriticalPoints, Kind, critical_points, perhaps_critical, rank_vertices
+from .critical_points import CriticalPoints, Kind, critical_points
 from .diagram import PersistenceDiagram, persistence_diagram
 from .level_sets import level_set
 from .links import Links
 from .merge_tree import MergeTree, merge_tree
 from .pairing import Pairing, pairing_of
 from .persistence import EssentialClasses, essential_classes
+from .ranked_net import RankedNet, ranked_net
 from .reeb import ReebGraph, build_reeb_graph
 from .separatrices import Flow, Separatrices, flow_to_maxima, flow_to_minima, separatrices_of
 
@@ -38,23 +39,19 @@ class FieldTopology:
     values: Floats
 
     @cached_property
-    def rank(self) -> Ints:
-        """(n,) strict order of the vertices."""
-        return rank_vertices(self.values)
+    def net(self) -> RankedNet:
+        """The net in the order of the values."""
+        return ranked_net(self.links, self.values)
 
     @cached_property
     def minima(self) -> MergeTree:
         """The components of the sublevel sets."""
-        return merge_tree(self.rank, self.links, self._candidates)
+        return merge_tree(self.net)
 
     @cached_property
     def maxima(self) -> MergeTree:
         """The components of the superlevel sets; the same order read downwards, so that ties are broken alike."""
-        return merge_tree(len(self.rank) - 1 - self.rank, self.links, self._candidates)
-
-    @cached_property
-    def _candidates(self) -> Ints:
-        return perhaps_critical(self.rank, self.links)
+        return merge_tree(self.net.reversed())
 
     @cached_property
     def essential(self) -> EssentialClasses:
@@ -69,7 +66,7 @@ class FieldTopology:
     @cached_property
     def critical_points(self) -> CriticalPoints:
         """Net vertex, kind, multiplicity and value of each critical point."""
-        return critical_points(self.values, self.rank, self.links, self._candidates)
+        return critical_points(self.values, self.net)
 
     @cached_property
     def separatrices(self) -> Separatrices:
@@ -78,19 +75,19 @@ class FieldTopology:
 
     @cached_property
     def up(self) -> Flow:
-        """The way of every vertex to a maximum."""
-        return flow_to_maxima(self.links, self.positions, self.values, self.rank)
+        """The path of every vertex to a maximum."""
+        return flow_to_maxima(self.net, self.positions, self.values)
 
     @cached_property
     def down(self) -> Flow:
-        """The way of every vertex to a minimum."""
-        return flow_to_minima(self.links, self.positions, self.values, self.rank)
+        """The path of every vertex to a minimum."""
+        return flow_to_minima(self.net, self.positions, self.values)
 
     @cached_property
     def flow_ends(self) -> tuple[Ints, Ints]:
         """(m,) the minimum below the lowest corner of each triangle, and the maximum above the highest."""
         corners = self.links.triangles
-        heights, rows = self.rank[corners], np.arange(len(corners))
+        heights, rows = self.net.rank[corners], np.arange(len(corners))
         return self.down.end[corners[rows, heights.argmin(axis=1)]], self.up.end[corners[rows, heights.argmax(axis=1)]]
 
 
@@ -158,7 +155,7 @@ class MorseSmaleComplex:
         known, pairs = self.topology, self.pairing
         ends = [pairs.extremum[self.n_cancelled :], pairs.surviving_saddles(self.n_cancelled)]
         critical = np.unique(np.concatenate([*ends, self.essential.components.ravel()]))
-        return build_reeb_graph(known.values, known.rank, known.links, critical)
+        return build_reeb_graph(known.values, known.net, critical)
 
     def level_lines(self, height: float) -> list[Floats]:
         """Return the level set of the field at a height as polylines, (q, 3) each."""
@@ -171,9 +168,9 @@ class MorseSmaleComplex:
 
     def above(self, persistence: float) -> "MorseSmaleComplex":
         """Return the complex with the pairs of at least this persistence, in the unit of the field."""
-        all_of_them = self.pairing.persistence
-        margin = ROUNDING * all_of_them.max(initial=0.0)
-        return self.simplified(int((all_of_them >= persistence - margin).sum()))
+        of_pairs = self.pairing.persistence
+        margin = ROUNDING * of_pairs.max(initial=0.0)
+        return self.simplified(int((of_pairs >= persistence - margin).sum()))
 
 
 def _without_pairs(points: CriticalPoints, pairing: Pairing, n_cancelled: int) -> CriticalPoints:

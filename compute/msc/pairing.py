@@ -54,4 +54,11 @@ def pairing_of(values: Floats, minima: MergeTree, maxima: MergeTree, essential: 
     # Between equal values the order of the vertices decides which pair is nested in which.
     steps = np.abs(minima.rank[extremum] - minima.rank[saddle])
     order = np.lexsort((steps, persistence))
-    return Pairing(extremum[order], saddle[order], elder[order], persistence[order], is_maximum[order], essential)
+    return Pairing(
+        extremum=extremum[order],
+        saddle=saddle[order],
+        elder=elder[order],
+        persistence=persistence[order],
+        is_maximum=is_maximum[order],
+        essential=essential,
+    )

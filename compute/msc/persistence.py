@@ -14,7 +14,7 @@ from .merge_tree import MergeTree, ends_of_paths
 
 @dataclass(frozen=True, eq=False)
 class EssentialClasses:
-    """What no sublevel set ever loses: the components and the loops of the net itself.
+    """The classes that no sublevel set ever loses: the components and the loops of the net itself.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ def _component_ends(minima: MergeTree, maxima: MergeTree) -> Ints:
 
 
 def _independent_loops(tree: MergeTree, cocycles: Cocycles) -> tuple[list[int], list[int]]:
-    """Return the saddles at which the sweep meets a new loop of the net, and what cocycles each loop crosses oddly."""
+    """Return the saddles at which the sweep meets a new loop of the net, and the cocycles each loop crosses oddly."""
     born: list[int] = []
     loops: list[int] = []
     echelon: dict[int, tuple[int, int]] = {}
@@ -106,19 +106,19 @@ def _closed_loops(tree: MergeTree, cocycles: Cocycles) -> Iterator[tuple[int, in
 
 
 class _LoopForest:
-    """Minima that are joined by paths, with the cocycles crossed on the way from each to the one it was joined to."""
+    """Minima that are joined by paths, with the cocycles crossed from each to the one it was joined to."""
 
     def __init__(self) -> None:
         self._above: dict[int, tuple[int, int]] = {}
 
-    def join(self, here: int, there: int, path: int) -> int:
+    def join(self, first: int, second: int, path: int) -> int:
         """Join two minima by a path; where they are joined already, return what the loop crosses."""
-        root_here, path_here = self._root(here)
-        root_there, path_there = self._root(there)
-        loop = path ^ path_here ^ path_there
-        if root_here == root_there:
+        first_root, first_path = self._root(first)
+        second_root, second_path = self._root(second)
+        loop = path ^ first_path ^ second_path
+        if first_root == second_root:
             return loop
-        self._above[root_here] = root_there, loop
+        self._above[first_root] = second_root, loop
         return 0
 
     def _root(self, minimum: int) -> tuple[int, int]:

@@ -9,8 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..errors import LevelError
 from ..surface.mesh import Bools, Floats, Ints
-from .critical_points import ranked_corners
-from .links import Links
+from .ranked_net import RankedNet
 
 # Pieces of triangles between critical levels that are laid out at once; noise with all its features has far more.
 MOST_PIECES = 50_000_000
@@ -53,7 +52,7 @@ class ReebGraph:
         return np.bincount(self.arcs.ravel(), minlength=len(self.vertex))
 
 
-def build_reeb_graph(values: Floats, rank: Ints, links: Links, critical: Ints) -> ReebGraph:
+def build_reeb_graph(values: Floats, net: RankedNet, critical: Ints) -> ReebGraph:
     """Return the Reeb graph with the given critical points; others are passed over as if the field rose there.
 
     The levels of the critical points cut every triangle into slices. Slices between the same two levels are joined
@@ -63,8 +62,8 @@ def build_reeb_graph(values: Floats, rank: Ints, links: Links, critical: Ints) -
     Parameters
     ----------
     values : (n,) float64
-    rank : (n,) int64
-    links : Links
+    net : RankedNet
+        Ordered by the values.
     critical : (N,) int64
         The lowest and highest vertex of each component, and pairs and handles in whole.
 
@@ -73,17 +72,23 @@ def build_reeb_graph(values: Floats, rank: Ints, links: Links, critical: Ints) -
     LevelError
         If the critical points are so many that the slices would not fit into memory.
     """
-    nodes = critical[np.argsort(rank[critical])]
-    slices = _Slices.of(rank, links, rank[nodes])
-    inside = _levels_along_edges(rank, links, slices)
-    contacts, passing = _level_sets(rank, links, slices, inside)
-    left, right = _touching_slices(rank, links, slices, inside)
+    nodes = critical[np.argsort(net.rank[critical])]
+    slices = _Slices.of(net, net.rank[nodes])
+    inside = _levels_along_edges(net, slices)
+    contacts, passing = _level_sets(net, slices, inside)
+    left, right = _touching_slices(net, slices, inside)
     _, piece = _components(slices.count, np.concatenate([left, passing[0]]), np.concatenate([right, passing[1]]))
     arcs = _Chains.of(contacts[0], piece[contacts[1]], len(nodes))
-    middle = np.searchsorted(values[nodes], values[links.triangles.T].mean(axis=0), side="right") - 1
+    triangles = net.links.triangles
+    middle = np.searchsorted(values[nodes], values[triangles.T].mean(axis=0), side="right") - 1
     middle = np.clip(middle, slices.first, slices.last)
-    rows = slices.at(np.arange(len(links.triangles)), middle)
-    return ReebGraph(nodes, arcs.ends, arcs.at(piece[rows], middle), _arc_of_vertex(rank, links, slices, piece, arcs))
+    rows = slices.at(np.arange(len(triangles)), middle)
+    return ReebGraph(
+        vertex=nodes,
+        arcs=arcs.ends,
+        arc_of_triangle=arcs.at(piece[rows], middle),
+        arc_of_vertex=_arc_of_vertex(net, slices, piece, arcs),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,8 +160,8 @@ class _Slices:
     offset: Ints
 
     @classmethod
-    def of(cls, rank: Ints, links: Links, levels: Ints) -> "_Slices":
-        low, _, high = ranked_corners(rank, links)
+    def of(cls, net: RankedNet, levels: Ints) -> "_Slices":
+        low, _, high = net.corners
         first = np.searchsorted(levels, low, side="right") - 1
         last = np.searchsorted(levels, high, side="left") - 1
         ends = np.cumsum(last - first + 1)
@@ -182,18 +187,18 @@ def _runs(start: Ints, stop: Ints) -> tuple[Ints, Ints]:
     return row, np.arange(len(row)) - np.repeat(np.cumsum(length) - length, length) + start[row]
 
 
-def _touching_slices(rank: Ints, links: Links, slices: _Slices, inside: tuple[Ints, Ints]) -> tuple[Ints, Ints]:
+def _touching_slices(net: RankedNet, slices: _Slices, inside: tuple[Ints, Ints]) -> tuple[Ints, Ints]:
     """Return pairs of slices between the same levels that share a stretch of an edge, or a pinched vertex."""
     first, last = inside
     row, place = _runs(first - 1, last)
-    left, right = links.edges.neighbours[row].T
-    pinched = ~links.is_plain
-    pinched[_node_at_rank(links, slices)[rank] >= 0] = False
-    triangle, corner = np.nonzero(pinched[links.triangles])
-    vertex = links.triangles[triangle, corner]
+    left, right = net.links.edges.neighbours[row].T
+    pinched = ~net.links.is_plain
+    pinched[_node_at_rank(net, slices)[net.rank] >= 0] = False
+    triangle, corner = np.nonzero(pinched[net.links.triangles])
+    vertex = net.links.triangles[triangle, corner]
     order = np.argsort(vertex, kind="stable")
     triangle, vertex = triangle[order], vertex[order]
-    around = slices.at(triangle, np.searchsorted(slices.levels, rank[vertex]) - 1)
+    around = slices.at(triangle, np.searchsorted(slices.levels, net.rank[vertex]) - 1)
     same = vertex[1:] == vertex[:-1]
     return (
         np.append(slices.at(left, place), around[:-1][same]),
@@ -201,30 +206,30 @@ def _touching_slices(rank: Ints, links: Links, slices: _Slices, inside: tuple[In
     )
 
 
-def _levels_along_edges(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, Ints]:
+def _levels_along_edges(net: RankedNet, slices: _Slices) -> tuple[Ints, Ints]:
     """Return the first and last level strictly inside each shared edge, one row for each pair of neighbours."""
-    left, right = rank[links.edges.vertices.T]
+    left, right = net.rank[net.links.edges.vertices.T]
     first = np.searchsorted(slices.levels, np.minimum(left, right), side="right")
     last = np.searchsorted(slices.levels, np.maximum(left, right), side="left") - 1
-    return first[links.edges.shared], last[links.edges.shared]
+    return first[net.links.edges.shared], last[net.links.edges.shared]
 
 
-def _level_sets(rank: Ints, links: Links, slices: _Slices, inside: tuple[Ints, Ints]) -> tuple[Ints, tuple[Ints, Ints]]:
+def _level_sets(net: RankedNet, slices: _Slices, inside: tuple[Ints, Ints]) -> tuple[Ints, tuple[Ints, Ints]]:
     """Follow the level sets of the critical points.
 
     Returns the rows (node, slice) of what touches the level set component of a node, and the pairs of slices below and
     above a level in the triangles where it passes by its node.
     """
     triangle, level = _runs(slices.first + 1, slices.last)
-    n_before = slices.offset[:-1] - np.arange(len(links.triangles))
+    n_before = slices.offset[:-1] - np.arange(len(net.links.triangles))
     n_nodes, n_cuts = len(slices.levels), len(triangle)
 
     def cut(of_triangle: Ints, of_level: Ints) -> Ints:
         return n_nodes + n_before[of_triangle] + of_level - slices.first[of_triangle] - 1
 
     row, level_of_row = _runs(*inside)
-    left, right = links.edges.neighbours[row].T
-    touching, node, is_low, is_high = _triangles_of_nodes(rank, links, slices)
+    left, right = net.links.edges.neighbours[row].T
+    touching, node, is_low, is_high = _triangles_of_nodes(net, slices)
     through = ~is_low & ~is_high
     _, component = _components(
         n_nodes + n_cuts,
@@ -242,30 +247,30 @@ def _level_sets(rank: Ints, links: Links, slices: _Slices, inside: tuple[Ints, I
     return np.concatenate(contacts, axis=1), (below[~has_node], above[~has_node])
 
 
-def _triangles_of_nodes(rank: Ints, links: Links, slices: _Slices) -> tuple[Ints, Ints, Bools, Bools]:
+def _triangles_of_nodes(net: RankedNet, slices: _Slices) -> tuple[Ints, Ints, Bools, Bools]:
     """Return the triangles at each node, and whether the node is their lowest or highest corner."""
-    node = _node_at_rank(links, slices)[rank][links.triangles]
+    node = _node_at_rank(net, slices)[net.rank][net.links.triangles]
     triangle, corner = np.nonzero(node >= 0)
-    low, _, high = ranked_corners(rank, links)
+    low, _, high = net.corners
     node = node[triangle, corner]
     height = slices.levels[node]
     return triangle, node, height == low[triangle], height == high[triangle]
 
 
-def _node_at_rank(links: Links, slices: _Slices) -> Ints:
+def _node_at_rank(net: RankedNet, slices: _Slices) -> Ints:
     """Return (n,) the node of each rank, -1 for ranks of other vertices."""
-    node = np.full(links.n_vertices, -1)
+    node = np.full(net.n_vertices, -1)
     node[slices.levels] = np.arange(len(slices.levels))
     return node
 
 
-def _arc_of_vertex(rank: Ints, links: Links, slices: _Slices, piece: Ints, arcs: _Chains) -> Ints:
+def _arc_of_vertex(net: RankedNet, slices: _Slices, piece: Ints, arcs: _Chains) -> Ints:
     # Any triangle at a vertex will do: around it, slices between the same levels are joined.
-    triangle = np.full(links.n_vertices, -1)
-    triangle[links.triangles.ravel()] = np.repeat(np.arange(len(links.triangles)), 3)
-    vertex = np.flatnonzero((triangle >= 0) & (_node_at_rank(links, slices)[rank] < 0))
-    level = np.searchsorted(slices.levels, rank[vertex]) - 1
-    found = np.full(links.n_vertices, -1)
+    triangle = np.full(net.n_vertices, -1)
+    triangle[net.links.triangles.ravel()] = np.repeat(np.arange(len(net.links.triangles)), 3)
+    vertex = np.flatnonzero((triangle >= 0) & (_node_at_rank(net, slices)[net.rank] < 0))
+    level = np.searchsorted(slices.levels, net.rank[vertex]) - 1
+    found = np.full(net.n_vertices, -1)
     found[vertex] = arcs.at(piece[slices.at(triangle[vertex], level)], level)
     return found
 

@@ -7,8 +7,8 @@ import numpy as np
 from ..surface.mesh import Bools, Floats, Ints
 from .critical_points import sector_nodes
 from .integral_lines import Ascent, Exits, ascent_of, exits_of, steepest_exits, trace
-from .links import Links
 from .merge_tree import ends_of_paths
+from .ranked_net import RankedNet
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,16 +39,16 @@ class Separatrices:
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """The way of every vertex up to a maximum, or down to a minimum where ``ascent`` is of the negative field.
+    """The path of every vertex up to a maximum, or down to a minimum where ``ascent`` is of the negative field.
 
     Attributes
     ----------
     rises : bool
-        Whether the way leads up.
+        Whether the paths lead up.
     ascent : Ascent
     exits : Exits
     next_vertex : (n,) int64
-        The net vertex that the steepest way from each vertex leads to or past; itself at extrema.
+        The net vertex that the steepest path from each vertex leads to or past; itself at extrema.
     end : (n,) int64
         The extremum that these lead to.
     """
@@ -60,21 +60,21 @@ class Flow:
     end: Ints
 
 
-def flow_to_maxima(links: Links, positions: Floats, values: Floats, rank: Ints) -> Flow:
+def flow_to_maxima(net: RankedNet, positions: Floats, values: Floats) -> Flow:
     """Return the flow along the gradient."""
-    return _flow(True, ascent_of(links, positions, values, rank))
+    return _flow(True, ascent_of(net, positions, values))
 
 
-def flow_to_minima(links: Links, positions: Floats, values: Floats, rank: Ints) -> Flow:
+def flow_to_minima(net: RankedNet, positions: Floats, values: Floats) -> Flow:
     """Return the flow against the gradient."""
-    return _flow(False, ascent_of(links, positions, -values, len(rank) - 1 - rank))
+    return _flow(False, ascent_of(net.reversed(), positions, -values))
 
 
 def _flow(rises: bool, ascent: Ascent) -> Flow:
-    exits, n = exits_of(ascent), ascent.links.n_vertices
+    exits, n = exits_of(ascent), ascent.net.n_vertices
     best = steepest_exits(exits, exits.vertex, n)
     next_vertex = np.where(best < 0, np.arange(n), exits.neighbour[best])
-    return Flow(rises, ascent, exits, next_vertex, ends_of_paths(next_vertex))
+    return Flow(rises=rises, ascent=ascent, exits=exits, next_vertex=next_vertex, end=ends_of_paths(next_vertex))
 
 
 def separatrices_of(saddles: Ints, up: Flow, down: Flow) -> Separatrices:
@@ -85,11 +85,11 @@ def separatrices_of(saddles: Ints, up: Flow, down: Flow) -> Separatrices:
     """
     rising, falling = _lines_of(saddles, up), _lines_of(saddles, down)
     return Separatrices(
-        np.append(rising.saddle, falling.saddle),
-        np.append(rising.extremum, falling.extremum),
-        np.append(rising.rises, falling.rises),
-        rising.lines + falling.lines,
-        rising.paths + falling.paths,
+        saddle=np.append(rising.saddle, falling.saddle),
+        extremum=np.append(rising.extremum, falling.extremum),
+        rises=np.append(rising.rises, falling.rises),
+        lines=rising.lines + falling.lines,
+        paths=rising.paths + falling.paths,
     )
 
 
@@ -100,13 +100,19 @@ def _lines_of(saddles: Ints, flow: Flow) -> Separatrices:
     lines, end = trace(flow.ascent, flow.exits, starts)
     for astray in np.flatnonzero(end != flow.end[first]).tolist():
         lines[astray] = flow.ascent.positions[paths[astray]]
-    return Separatrices(saddle, flow.end[first], np.full(len(lines), flow.rises), tuple(lines), tuple(paths))
+    return Separatrices(
+        saddle=saddle,
+        extremum=flow.end[first],
+        rises=np.full(len(lines), flow.rises),
+        lines=tuple(lines),
+        paths=tuple(paths),
+    )
 
 
 def _steepest_in_sectors(saddles: Ints, flow: Flow) -> Ints:
     """Return the exit that each sector above the saddles is left by."""
-    exits, n = flow.exits, flow.ascent.links.n_vertices
-    vertex, neighbour, component = sector_nodes(saddles, n - 1 - flow.ascent.rank, flow.ascent.links)
+    exits, n = flow.exits, flow.ascent.net.n_vertices
+    vertex, neighbour, component = sector_nodes(saddles, flow.ascent.net.reversed())
     keys = vertex * n + neighbour
     order = np.argsort(keys)
     is_saddle = np.zeros(n, dtype=bool)

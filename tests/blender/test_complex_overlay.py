@@ -16,6 +16,16 @@ def overlay(extension):
     return importlib.import_module(f"{extension.__name__}.ui.complex_overlay")
 
 
+@pytest.fixture
+def switches(extension):
+    return importlib.import_module(f"{extension.__name__}.ui.overlay_switches")
+
+
+@pytest.fixture
+def drawing(extension):
+    return importlib.import_module(f"{extension.__name__}.ui.overlay_drawing")
+
+
 def test_all_objects_of_a_complex_are_drawn_and_no_others(overlay, star_object):
     bpy.ops.eigenparts.trace_complex()
     bpy.context.view_layer.update()
@@ -33,13 +43,13 @@ def test_dots_follow_the_object(overlay, star, star_object):
     points = found.critical_points
     expected = found.topology.positions[points.vertex[points.kind == 2]] + [0, 0, 5]
     dots = next(obj for obj in overlay.traced_objects(bpy.context) if obj["eigenparts_role"] == "maximum")
-    np.testing.assert_allclose(overlay.places_of_dots(dots), expected, atol=1e-5)
+    np.testing.assert_allclose(overlay.critical_points_of(dots), expected, atol=1e-5)
 
 
-def test_dots_are_round_and_face_the_view(overlay):
+def test_dots_are_round_and_face_the_view(drawing):
     view = Matrix.Rotation(0.7, 4, "X") @ Matrix.Rotation(-0.4, 4, "Z")
     centre = Vector((1, 2, 3))
-    corners = np.array(overlay.disk_facing_the_view(centre, view, 0.5))
+    corners = np.array(drawing.disk_facing_the_view(centre, view, 0.5))
     outer = corners.reshape(-1, 3, 3)[:, 1:].reshape(-1, 3)
     np.testing.assert_allclose(np.linalg.norm(outer - centre, axis=1), 0.5, rtol=1e-6)
     depth = [(view @ Vector(corner)).z for corner in corners]
@@ -47,19 +57,19 @@ def test_dots_are_round_and_face_the_view(overlay):
 
 
 @pytest.mark.parametrize("switch", ["critical_points", "separatrices", "level_sets"])
-def test_a_switch_hides_what_it_names_and_nothing_else(overlay, star_object, switch):
+def test_a_switch_hides_what_it_names_and_nothing_else(overlay, switches, star_object, switch):
     bpy.ops.eigenparts.trace_complex()
     bpy.context.view_layer.update()
     assert getattr(bpy.context.window_manager, f"eigenparts_{switch}")
     setattr(bpy.context.window_manager, f"eigenparts_{switch}", False)
     shown = {obj["eigenparts_role"] for obj in overlay.traced_objects(bpy.context)}
-    assert shown == set(overlay.COMPLEX_COLOURS) - set(overlay.SHOWN[switch][2])
+    assert shown == set(overlay.COMPLEX_COLOURS) - set(switches.SHOWN[switch][2])
     setattr(bpy.context.window_manager, f"eigenparts_{switch}", True)
     assert {obj["eigenparts_role"] for obj in overlay.traced_objects(bpy.context)} == set(overlay.COMPLEX_COLOURS)
 
 
-def test_switches_are_off_where_nothing_is_traced(overlay, star_object):
-    assert not any(getattr(bpy.context.window_manager, f"eigenparts_{switch}") for switch in overlay.SHOWN)
+def test_switches_are_off_where_nothing_is_traced(switches, star_object):
+    assert not any(getattr(bpy.context.window_manager, f"eigenparts_{switch}") for switch in switches.SHOWN)
 
 
 def lines_of(obj):

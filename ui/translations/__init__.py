@@ -9,7 +9,11 @@ from .german_sentences import GERMAN_SENTENCES
 # By Blender's name of the language.
 LANGUAGES = {"de_DE": GERMAN | GERMAN_SENTENCES}
 # Blender looks for the labels of operators in a context of their own.
-CONTEXTS = (bpy.app.translations.contexts.default, bpy.app.translations.contexts.operator_default)
+CONTEXTS = (
+    # The stubs declare neither of them.
+    bpy.app.translations.contexts.default,  # type: ignore[attr-defined]
+    bpy.app.translations.contexts.operator_default,  # type: ignore[attr-defined]
+)
 
 
 def register() -> None:

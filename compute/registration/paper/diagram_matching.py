@@ -14,10 +14,10 @@ from ...analysis import Analysis
 from ...errors import RegistrationError
 from ...fem.eigenbasis import Eigenbasis
 from ...fields.scalar_field import refined_net
-from ...msc.critical_points import rank_vertices
 from ...msc.diagram_distance import bottleneck_distance, hausdorff_distance
 from ...msc.links import links_of
 from ...msc.merge_tree import merge_tree
+from ...msc.ranked_net import ranked_net
 from ...segmentation.parts.part_labels import BODY, Segmentation
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import ROUNDING, evened
@@ -134,8 +134,8 @@ def diagram_points(triangles: Ints, functions: Floats) -> list[Floats]:
     diagrams = []
     for function in functions.T:
         values = evened(function, float(np.ptp(function)))
-        rank = rank_vertices(values)
-        trees = merge_tree(rank, links), merge_tree(len(values) - 1 - rank, links)
+        net = ranked_net(links, values)
+        trees = merge_tree(net), merge_tree(net.reversed())
         points = values[np.concatenate([np.stack([tree.extremum, tree.saddle], axis=1) for tree in trees])]
         low, high = values[links.vertex].min(), values[links.vertex].max()
         is_feature = np.abs(points[:, 1] - points[:, 0]) > NOISE * (high - low)

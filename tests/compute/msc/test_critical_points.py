@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from compute.msc.critical_points import CriticalPoints, Kind, critical_points, rank_vertices
+from compute.msc.critical_points import CriticalPoints, Kind, critical_points
 from compute.msc.links import links_of
+from compute.msc.ranked_net import ranked_net
 from compute.surface.mesh import TriangleMesh
 from tests.compute.msc import surfaces
 from tests.shapes import icosphere, joined, rectangle, torus
@@ -25,7 +26,7 @@ COMPLEXES = {
 
 
 def points_of(mesh: TriangleMesh, values: np.ndarray) -> CriticalPoints:
-    return critical_points(values, rank_vertices(values), links_of(mesh.triangles, len(mesh.vertices)))
+    return critical_points(values, ranked_net(links_of(mesh.triangles, len(mesh.vertices)), values))
 
 
 @pytest.mark.parametrize("name", COMPLEXES)

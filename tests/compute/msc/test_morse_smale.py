@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from compute.msc.critical_points import Kind, rank_vertices
+from compute.msc.critical_points import Kind
 from compute.msc.integral_lines import ascent_of, exits_of, steepest_exits, trace
 from compute.msc.links import links_of
 from compute.msc.morse_smale import MorseSmaleComplex
+from compute.msc.ranked_net import ranked_net
 from compute.surface.mesh import TriangleMesh
 from tests.compute.msc.surfaces import closed_surface, noise, topology, waves
 from tests.shapes import icosphere, rectangle, torus
@@ -32,7 +33,7 @@ def test_line_on_a_plane_runs_straight_along_the_gradient():
     mesh = rectangle(16, 8)
     slope = np.array([1.0, 0.37, 0.0])
     values, links = mesh.vertices @ slope, links_of(mesh.triangles, len(mesh.vertices))
-    ascent = ascent_of(links, mesh.vertices, values, rank_vertices(values))
+    ascent = ascent_of(ranked_net(links, values), mesh.vertices, values)
     exits = exits_of(ascent)
     start = steepest_exits(exits, exits.vertex, len(values))[0]
     (line,), (end,) = trace(ascent, exits, np.array([start]))
@@ -46,7 +47,7 @@ def test_lines_on_a_sphere_follow_the_meridians():
     mesh = icosphere(5)
     axis = np.array([0.3, 0.2, 1.0]) / np.linalg.norm([0.3, 0.2, 1.0])
     values, links = mesh.vertices @ axis, links_of(mesh.triangles, len(mesh.vertices))
-    ascent = ascent_of(links, mesh.vertices, values, rank_vertices(values))
+    ascent = ascent_of(ranked_net(links, values), mesh.vertices, values)
     exits = exits_of(ascent)
     starts = steepest_exits(exits, exits.vertex, len(values))[np.flatnonzero(np.abs(values) < 0.02)]
     lines, end = trace(ascent, exits, starts)
