@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ... import compute
-from ..mesh_data.mesh_arrays import own_names, read_own_integers, remove_own_attributes, write_attribute
+from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers
 from .schema import CORRECTIONS, PAINTED, PIECE, REDRAWN, TREE
 from .serialization import UNREADABLE, packed_array, unpacked_array
 from .stored_analysis import packed_branches, unpacked_branches
@@ -46,29 +46,24 @@ def read_painted(mesh: bpy.types.Mesh) -> np.ndarray:
     return read_own_integers(mesh, PAINTED).astype(np.int64) - 1
 
 
-def write_painted(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
-    """Write the part of each painted face; nothing is left where none is."""
-    if (painted >= 0).any():
-        write_attribute(mesh, PAINTED, (painted + 1).astype(np.int32))
-    else:
-        remove_own_attributes(mesh, [PAINTED.name])
+def painted_attribute(painted: np.ndarray) -> dict[OwnAttribute, np.ndarray | None]:
+    """Return the part of each painted face as an attribute; None where no face is painted."""
+    return {PAINTED: (painted + 1).astype(np.int32) if (painted >= 0).any() else None}
 
 
-def write_redrawn(
-    mesh: bpy.types.Mesh, part_tree: compute.PartTree, corrections: compute.Corrections
-) -> dict[str, Any]:
-    """Write the branch of each face as corrections divide them, and return what goes into the state beside it."""
+def redrawn_attribute(
+    part_tree: compute.PartTree, corrections: compute.Corrections
+) -> dict[OwnAttribute, np.ndarray | None]:
+    """Return the branch of each face as corrections divide them; None where they divide no face."""
+    return {PIECE: part_tree.branches[0].of_face if compute.needs_faces(corrections.items) else None}
+
+
+def packed_redrawn(part_tree: compute.PartTree, corrections: compute.Corrections) -> dict[str, Any]:
+    """Return what goes into the state beside ``redrawn_attribute``; None where no face is divided."""
     if not compute.needs_faces(corrections.items):
-        return drop_redrawn(mesh)
-    write_attribute(mesh, PIECE, part_tree.branches[0].of_face)
+        return {REDRAWN: None}
     sides = {"side": packed_array(corrections.side), "painted": packed_array(corrections.painted)}
     return {REDRAWN: {**packed_branches(part_tree.branches), **sides}}
-
-
-def drop_redrawn(mesh: bpy.types.Mesh) -> dict[str, Any]:
-    """Take redrawn branches away: there is no need for them, or they are not true any more."""
-    remove_own_attributes(mesh, [PIECE.name])
-    return {REDRAWN: None}
 
 
 def read_redrawn(

@@ -18,7 +18,7 @@ from ..mesh_state.references import registered_objects
 from ..mesh_state.state import MeshState, read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
-from ..outputs import part_writer
+from ..outputs import output_registry, part_writer
 from ..outputs.rollback import all_or_nothing
 from ..parts import mesh_segmentation
 from ..parts.analysis_settings import AnalysisInput, AnalysisSettings
@@ -123,7 +123,7 @@ def write_all(
 
 def write_reference(obj: bpy.types.Object, reference: PreparedReference) -> Segmented:
     """Let a reference show its parts; all of them are written or nothing."""
-    part_writer.refuse_foreign_results(read(obj.data))
+    output_registry.refuse_foreign_results(read(obj.data))
     shown = mesh_segmentation.write(obj.data, reference.result, mode=reference.mode, choice={"level": reference.level})
     warnings = _in_name_of(obj.name, shown.messages.warnings)
     return Segmented(shown.labels, Messages(shown.messages.infos, warnings))
@@ -157,7 +157,7 @@ def write_target(
     reference : Object or None
         The object that is the reference, None if it is in another file.
     """
-    part_writer.refuse_foreign_results(read(mesh))
+    output_registry.refuse_foreign_results(read(mesh))
     with all_or_nothing(mesh):
         result = shape.result
         lost = analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
