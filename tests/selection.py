@@ -52,15 +52,9 @@ def is_drawn(name: str, share: float, draw: str) -> bool:
     return number < share * 2**64
 
 
-def few_and_many(few: int, many: int) -> list:
-    """Return how often something random is tried: a few times, and in the long tests many times."""
-    return [few, pytest.param(many, marks=pytest.mark.long)]
-
-
-def mostly_long(cases: list, n_usual: int) -> list:
-    """Return cases of which all but some, evenly among the others, are long tests."""
-    usual = {round(place * (len(cases) - 1) / max(1, n_usual - 1)) for place in range(n_usual)}
-    return [case if place in usual else pytest.param(case, marks=pytest.mark.long) for place, case in enumerate(cases)]
+def draws(n_long: int) -> list:
+    """Return numbers for a random test to begin with: one for a usual test, and others for long ones."""
+    return [0, *(pytest.param(number, marks=pytest.mark.long) for number in range(1, n_long + 1))]
 
 
 def _last_commit() -> str:

@@ -7,22 +7,23 @@ from pathlib import Path
 
 import bpy
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 
 from compute import TriangleMesh
 from tests.blender.conftest import add_object, everything_on
 from tests.blender.damage import ATTRIBUTE_DAMAGES, STATE, damage, damage_attribute, damages_of, own_attributes
 from tests.blender.drawn import draw_panels
+from tests.selection import draws
 from tests.shapes import joined
 
 ROOT = Path(__file__).resolve().parents[2]
 OUTPUTS = {"VERTEX_ATTRIBUTE", "CORNER_COLORS", "FACE_SETS", "VERTEX_GROUPS", "MATERIALS", "FIELD"}
-# Meshes are damaged one after the other; the fixtures stay the same.
+# Meshes are damaged one after the other; the fixtures stay the same. Each draw has other damages.
 DAMAGED = settings(
     deadline=None,
-    max_examples=60,
-    derandomize=True,
+    max_examples=15,
+    database=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
 
@@ -153,11 +154,13 @@ def all_damages(mesh):
     return damages_of(mesh) + [(name, kind) for name in own_attributes(mesh) for kind in ATTRIBUTE_DAMAGES]
 
 
+@pytest.mark.parametrize("draw", draws(4))
 @pytest.mark.parametrize("situation", ["divided", "corrected", "registered", "apart"])
-def test_whatever_is_damaged_everything_quick_works_or_refuses(request, situation, tracebacks):
+def test_whatever_is_damaged_everything_quick_works_or_refuses(request, situation, tracebacks, draw):
     obj = request.getfixturevalue(situation)
     template = obj.data.copy()
 
+    @seed(draw)
     @DAMAGED
     @given(st.lists(st.sampled_from(all_damages(template)), min_size=1, max_size=2, unique_by=lambda one: one[0]))
     def check(damages):
@@ -173,10 +176,12 @@ def test_whatever_is_damaged_everything_quick_works_or_refuses(request, situatio
     check()
 
 
+@pytest.mark.parametrize("draw", draws(4))
 @pytest.mark.parametrize("method", ["INSERT", "EXISTING"])
-def test_whatever_is_damaged_a_cut_works_or_refuses(corrected, method, tracebacks):
+def test_whatever_is_damaged_a_cut_works_or_refuses(corrected, method, tracebacks, draw):
     template = corrected.data.copy()
 
+    @seed(draw)
     @DAMAGED
     @given(st.sampled_from(all_damages(template)))
     def check(one):
@@ -188,9 +193,11 @@ def test_whatever_is_damaged_a_cut_works_or_refuses(corrected, method, traceback
     check()
 
 
-def test_whatever_is_damaged_parts_are_separated_or_left(divided, tracebacks):
+@pytest.mark.parametrize("draw", draws(4))
+def test_whatever_is_damaged_parts_are_separated_or_left(divided, tracebacks, draw):
     template = divided.data.copy()
 
+    @seed(draw)
     @DAMAGED
     @given(st.sampled_from(all_damages(template)))
     def check(one):
@@ -212,11 +219,13 @@ def test_whatever_is_damaged_parts_are_separated_or_left(divided, tracebacks):
         ("create_skeleton_curves", {"order": "1"}),
     ],
 )
-def test_whatever_is_damaged_longer_work_is_done_or_refused(registered, operator, options, tracebacks):
+@pytest.mark.parametrize("draw", draws(2))
+def test_whatever_is_damaged_longer_work_is_done_or_refused(registered, operator, options, tracebacks, draw):
     template = registered.data.copy()
     told = [one for one in all_damages(template) if one[0][1:2] in (("registration",), ("part_names",), ("parts",))]
 
-    @settings(DAMAGED, max_examples=8)
+    @seed(draw)
+    @settings(DAMAGED, max_examples=4)
     @given(st.sampled_from(told))
     def check(one):
         hurt(take_a_copy(registered, template), *one)
@@ -228,10 +237,12 @@ def test_whatever_is_damaged_longer_work_is_done_or_refused(registered, operator
     check()
 
 
-def test_a_new_analysis_heals_any_damage(divided, tracebacks):
+@pytest.mark.parametrize("draw", draws(3))
+def test_a_new_analysis_heals_any_damage(divided, tracebacks, draw):
     template = divided.data.copy()
 
-    @settings(DAMAGED, max_examples=25)
+    @seed(draw)
+    @settings(DAMAGED, max_examples=8)
     @given(st.sampled_from(damages_of(template)))
     def check(one):
         mesh = take_a_copy(divided, template)

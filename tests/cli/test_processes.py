@@ -228,6 +228,7 @@ def test_a_cluster_does_the_same_as_one_process(run, command_line, cluster, fold
     assert texts_of(tmp_path / "one") == texts_of(tmp_path / "many")
 
 
+@pytest.mark.long
 def test_a_lost_machine_costs_nothing(command_line, cluster, folder):
     address_file, workers = cluster
     batch = command_line("batch", folder, "--scheduler", address_of(address_file))

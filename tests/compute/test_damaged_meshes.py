@@ -4,14 +4,17 @@ import warnings
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 
 from compute import EngineError, TriangleMesh, analyze, reeb_graph
 from tests.damage import DAMAGES, SHAPES, damaged
+from tests.selection import draws
 
-N_CASES = 500
-
+# Cases of each draw; each long one has others.
+RANDOM = settings(
+    max_examples=60, deadline=None, database=None, suppress_health_check=list(HealthCheck), print_blob=True
+)
 steps = st.lists(st.tuples(st.sampled_from(sorted(DAMAGES)), st.floats(0.0, 1.0)), max_size=3)
 seeds = st.integers(0, 2**32 - 1)
 rotations = st.integers(0, 2**32 - 1).map(lambda seed: np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0])
@@ -43,39 +46,50 @@ def euler_characteristic(triangles):
     return len(np.unique(triangles)) - len(np.unique(sides, axis=0)) + len(np.unique(np.sort(triangles), axis=0))
 
 
-@settings(max_examples=N_CASES, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(shape=st.sampled_from(sorted(SHAPES)), steps=steps, seed=seeds, exponent=st.integers(-5, 5))
-def test_there_is_a_division_or_a_sentence(shape, steps, seed, exponent):
-    with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
-        vertices, triangles = damaged(shape, steps, seed, exponent)
-    first, second = divided(vertices, triangles), divided(vertices, triangles)
-    if isinstance(first, str):
-        assert first == second
-        assert first.endswith(".")
-    else:
-        check(first)
-        np.testing.assert_array_equal(first.segment().labels, second.segment().labels)
+@pytest.mark.parametrize("draw", draws(9))
+def test_there_is_a_division_or_a_sentence(draw):
+    @seed(draw)
+    @RANDOM
+    @given(shape=st.sampled_from(sorted(SHAPES)), steps=steps, number=seeds, exponent=st.integers(-5, 5))
+    def check_it(shape, steps, number, exponent):
+        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
+            vertices, triangles = damaged(shape, steps, number, exponent)
+        first, second = divided(vertices, triangles), divided(vertices, triangles)
+        if isinstance(first, str):
+            assert first == second
+            assert first.endswith(".")
+        else:
+            check(first)
+            np.testing.assert_array_equal(first.segment().labels, second.segment().labels)
+
+    check_it()
 
 
-@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(shapes=st.lists(st.tuples(st.sampled_from(sorted(SHAPES)), steps, seeds), min_size=2, max_size=3))
-def test_there_is_a_division_of_each_loose_part_or_a_sentence(shapes):
-    with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
-        pieces = [damaged(shape, its_steps, seed) for shape, its_steps, seed in shapes]
-    places = [vertices + np.array([9.0 * k, 0, 0]) for k, (vertices, _) in enumerate(pieces)]
-    first = np.cumsum([0, *map(len, places)])
-    triangles = [faces + start for (_, faces), start in zip(pieces, first, strict=False)]
-    try:
-        check(analyze(TriangleMesh(np.vstack(places), np.vstack(triangles)), order=1, shells="separate"))
-    except EngineError as refusal:
-        assert str(refusal).endswith(".")  # noqa: PT017 - a refusal is as good
+@pytest.mark.parametrize("draw", draws(4))
+def test_there_is_a_division_of_each_loose_part_or_a_sentence(draw):
+    @seed(draw)
+    @settings(RANDOM, max_examples=20)
+    @given(shapes=st.lists(st.tuples(st.sampled_from(sorted(SHAPES)), steps, seeds), min_size=2, max_size=3))
+    def check_them(shapes):
+        with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
+            pieces = [damaged(shape, its_steps, number) for shape, its_steps, number in shapes]
+        places = [vertices + np.array([9.0 * k, 0, 0]) for k, (vertices, _) in enumerate(pieces)]
+        first = np.cumsum([0, *map(len, places)])
+        triangles = [faces + start for (_, faces), start in zip(pieces, first, strict=False)]
+        try:
+            check(analyze(TriangleMesh(np.vstack(places), np.vstack(triangles)), order=1, shells="separate"))
+        except EngineError as refusal:
+            assert str(refusal).endswith(".")  # noqa: PT017 - a refusal is as good
+
+    check_them()
 
 
+@pytest.mark.parametrize("draw", draws(2))
 @pytest.mark.parametrize("damage", ["delete_faces", "flip_faces", "merge_vertices"])
-def test_most_broken_meshes_are_divided_all_the_same(damage):
-    rng = np.random.default_rng(0)
-    cases = [(shape, rng.random(), int(rng.integers(2**32))) for shape in SHAPES for _ in range(10)]
-    outcomes = [divided(*damaged(shape, [(damage, share)], seed)) for shape, share, seed in cases]
+def test_most_broken_meshes_are_divided_all_the_same(damage, draw):
+    rng = np.random.default_rng(draw)
+    cases = [(shape, rng.random(), int(rng.integers(2**32))) for shape in SHAPES for _ in range(4)]
+    outcomes = [divided(*damaged(shape, [(damage, share)], number)) for shape, share, number in cases]
     assert np.mean([not isinstance(outcome, str) for outcome in outcomes]) >= 0.8
 
 

@@ -9,7 +9,7 @@ from tests.shapes import icosphere, star
 
 @pytest.mark.parametrize("order", [1, 3])
 def test_every_report_of_progress_can_cancel(order):
-    mesh = star(n_subdivisions=2)
+    mesh = star(n_arms=3, n_subdivisions=1)
     reports = []
     analyze(mesh, order=order, progress=lambda fraction, text: reports.append(text))
     for last in range(len(reports)):

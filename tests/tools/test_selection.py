@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.selection import is_drawn, mostly_long
+from tests.selection import draws, is_drawn
 
 ROOT = Path(__file__).parents[2]
 NAMES = [f"tests/test_something.py::test_it[{number}]" for number in range(1000)]
@@ -38,10 +38,12 @@ def test_twenty_draws_of_a_fifth_meet_nearly_everything():
     assert len(met) / len(NAMES) > 0.97
 
 
-def test_some_cases_stay_usual_and_all_are_there():
-    cases = mostly_long(list("abcdefg"), 3)
-    assert [case for case in cases if isinstance(case, str)] == ["a", "d", "g"]
-    assert [case if isinstance(case, str) else case.values[0] for case in cases] == list("abcdefg")
+def test_of_all_draws_one_is_usual():
+    usual, *long = draws(3)
+    assert usual == 0
+    assert [(case.values, [mark.name for mark in case.marks]) for case in long] == [
+        ((number,), ["long"]) for number in (1, 2, 3)
+    ]
 
 
 def run(folder, *arguments):

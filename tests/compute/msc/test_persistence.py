@@ -10,9 +10,11 @@ from compute.surface.mesh import TriangleMesh
 from tests.compute.msc import surfaces
 from tests.compute.msc.reference import pairs_of_the_paper
 from tests.compute.msc.surfaces import closed_surface, diagram_of, noise, topology, waves, with_holes
+from tests.selection import draws
 from tests.shapes import icosphere, joined, rectangle, torus
 
-N_FIELDS = 60
+# Random fields of each draw.
+N_FIELDS = 15
 ODD_COMPLEXES = [
     surfaces.cones_sharing_their_tip,
     surfaces.three_sheets_on_an_edge,
@@ -22,6 +24,11 @@ ODD_COMPLEXES = [
     lambda: joined(torus(12, 8), rectangle(6, 5), surfaces.projective_plane()),
     lambda: surfaces.with_holes(torus(12, 8), np.random.default_rng(3), 0.4),
 ]
+
+
+def fields_of(draw):
+    """Return the seeds of the random fields of a draw."""
+    return range(draw * N_FIELDS, (draw + 1) * N_FIELDS)
 
 
 def filtration(mesh: TriangleMesh, values: np.ndarray) -> gudhi.SimplexTree:
@@ -59,29 +66,32 @@ def same_as_gudhi(ours: FieldTopology, mesh: TriangleMesh, values: np.ndarray, i
         same_points(off_diagonal, [interval for d, interval in found if d == dimension])
 
 
+@pytest.mark.parametrize("draw", draws(3))
 @pytest.mark.parametrize("field", [noise, waves])
 @pytest.mark.parametrize("genus", [0, 1, 2, 3])
-def test_closed_surfaces_have_gudhis_ordinary_and_extended_pairs(genus, field):
+def test_closed_surfaces_have_gudhis_ordinary_and_extended_pairs(genus, field, draw):
     mesh = closed_surface(genus)
-    for seed in range(N_FIELDS):
+    for seed in fields_of(draw):
         values = field(mesh, np.random.default_rng(seed))
         same_as_gudhi(topology(mesh, values), mesh, values, is_closed=True)
 
 
+@pytest.mark.parametrize("draw", draws(3))
 @pytest.mark.parametrize("field", [noise, waves])
 @pytest.mark.parametrize("genus", [0, 1, 2, 3])
-def test_surfaces_with_boundary_have_gudhis_extended_pairs(genus, field):
-    for seed in range(N_FIELDS):
+def test_surfaces_with_boundary_have_gudhis_extended_pairs(genus, field, draw):
+    for seed in fields_of(draw):
         rng = np.random.default_rng(seed)
         mesh = with_holes(closed_surface(genus), rng)
         values = field(mesh, rng)
         same_as_gudhi(topology(mesh, values), mesh, values, is_closed=False)
 
 
+@pytest.mark.parametrize("draw", draws(3))
 @pytest.mark.parametrize("number", range(len(ODD_COMPLEXES)))
-def test_complexes_that_are_no_surfaces_have_gudhis_extended_pairs(number):
+def test_complexes_that_are_no_surfaces_have_gudhis_extended_pairs(number, draw):
     mesh = ODD_COMPLEXES[number]()
-    for seed in range(N_FIELDS):
+    for seed in fields_of(draw):
         values = noise(mesh, np.random.default_rng(seed))
         same_as_gudhi(topology(mesh, values), mesh, values, is_closed=False)
 
@@ -123,8 +133,9 @@ def test_constant_field_has_no_pairs_and_keeps_the_loops():
     assert len(diagram.essential) == 1 + 4
 
 
-def test_plateaus_have_gudhis_pairs():
+@pytest.mark.parametrize("draw", draws(3))
+def test_plateaus_have_gudhis_pairs(draw):
     mesh = icosphere(2)
-    for seed in range(N_FIELDS):
+    for seed in fields_of(draw):
         steps = np.random.default_rng(seed).integers(0, 4, len(mesh.vertices)).astype(float)
         same_as_gudhi(topology(mesh, steps), mesh, steps, is_closed=True)

@@ -114,7 +114,10 @@ def test_switching_ellipsoids_are_put_in_order():
     assert matching.order[along[0]] == along[1]
 
 
-@pytest.mark.parametrize(("n_arms", "width"), [(5, 0.25), (8, 0.15)], ids=["starfish", "octopus"])
+@pytest.mark.parametrize(
+    ("n_arms", "width"),
+    [pytest.param(5, 0.25, id="starfish"), pytest.param(8, 0.15, id="octopus", marks=pytest.mark.long)],
+)
 def test_equal_arms_go_round_in_order_and_leave_doubt(n_arms, width):
     arms = [(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(n_arms) / n_arms]
     star = lumpy_ball(4, tuple((arm, 1.5, width) for arm in arms))
