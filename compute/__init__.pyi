@@ -1,8 +1,8 @@
 """The names of the engine that are loaded when they are first asked for; ``__init__.py`` reads where they live here."""
 
 # The scripting API.
-from .analysis import Analysis as Analysis
 from .analysis import analyze as analyze
+from .analyzed_shape import Analysis as Analysis
 from .errors import Cancelled as Cancelled
 from .errors import EngineError as EngineError
 from .errors import FieldError as FieldError

@@ -31,8 +31,8 @@ OUTSIDE = {
 ORDER = {
     # The path of the data, read from left to right.
     "compute": [
-        *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
-        *("readings", "registration", "skeletons"),
+        *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation"),
+        *("analyzed_shape", "analysis", "readings", "registration", "skeletons"),
     ],
     "compute.segmentation": ["modes", "hierarchy", "faces", "borders", "edits", "parts"],
     "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],
