@@ -369,7 +369,7 @@ class Analysis:
         return inserted(whole, part, inside, segment_part(alone, mode), alone.net, self.net)
 
 
-def segment_part(part: Analysis, mode: str = NESTED) -> Segmentation:
+def segment_part(part: Analysis, mode: str) -> Segmentation:
     """Divide a part that was analyzed on its own at the level that is usual for parts."""
     holds_border = part.field.name == DIFFUSION and part.eigenbasis.boundary == "dirichlet"
     return part.segment(threshold=WITHIN_THRESHOLD / part.field.value_range if holds_border else None, mode=mode)
