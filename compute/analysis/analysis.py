@@ -389,7 +389,7 @@ def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis
     return analysis._analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
 
 
-def segment_part(part: Analysis, mode: str = NESTED) -> Segmentation:
+def segment_part(part: Analysis, mode: str) -> Segmentation:
     """Divide a part that was analyzed on its own at the level that is usual for parts."""
     holds_border = part.field.name == DIFFUSION and part.eigenbasis.boundary == "dirichlet"
     return part.segment(threshold=WITHIN_THRESHOLD / part.field.value_range if holds_border else None, mode=mode)
