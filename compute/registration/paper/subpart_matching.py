@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...analysis.analysis import Analysis, analyze_part, segment_part
+from ...choices import FEATURES
 from ...progress import Progress, rising, silent
-from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import Segmentation
 from .diagram_matching import DiagramMatching, PartPairs, match_diagrams, match_tips
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from compute.segmentation.modes import MODES
 
 from compute import TriangleMesh, analyze
+from compute.choices import MODES
 from compute.segmentation.borders.level_set_borders import closing_heights
 from compute.segmentation.hierarchy.arc_measures import N_SAMPLES
 from compute.segmentation.hierarchy.arc_tree import ALWAYS, NEVER, NO_ARC, NO_SADDLE, flat_tree
