@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.blender.conftest import add_object, values_of
+from tests.blender.conftest import add_object, analyzed_star, values_of
 from tests.blender.drawn import draw_panels
 from tests.blender.failing import (
     all_of,
@@ -101,17 +101,22 @@ def test_a_name_and_a_colour_that_cannot_be_written_are_not_taken(full, monkeypa
 
 
 @pytest.fixture
-def full(analyzed):
+def full(scene, star):
     """The star with all outputs, and a group, a material and an assignment of the user's."""
-    mesh = analyzed.data
-    analyzed.vertex_groups.new(name="mine").add([0, 1, 2], 0.5, "REPLACE")
+    return scene(full_star, star)
+
+
+def full_star(star):
+    analyzed_star(star)
+    obj = bpy.context.object
+    mesh = obj.data
+    obj.vertex_groups.new(name="mine").add([0, 1, 2], 0.5, "REPLACE")
     for name in ("skin", "nails"):
         mesh.materials.append(bpy.data.materials.new(name))
     mesh.polygons.foreach_set("material_index", np.arange(len(mesh.polygons)) % 2)
     bpy.ops.eigenparts.write_outputs(outputs=ALL_OUTPUTS, softness=0.05)
     mesh.eigenparts.rows[1].title = "Arm"
     bpy.ops.eigenparts.split_part(part=3, position=0.4)
-    return analyzed
 
 
 ALL_OUTPUTS = {"VERTEX_ATTRIBUTE", "CORNER_COLORS", "FACE_SETS", "VERTEX_GROUPS", "MATERIALS", "FIELD"}

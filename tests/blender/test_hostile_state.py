@@ -36,42 +36,59 @@ def small_star():
 
 
 @pytest.fixture
-def divided(small_star):
+def divided(scene, small_star):
     """A star with two trees, all outputs and a name and a colour of the user's."""
+    return scene(divided_star, small_star)
+
+
+def divided_star(small_star):
     obj = add_object(small_star.vertices, small_star.triangles)
     bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=4, order="1")
     bpy.ops.eigenparts.segment(level=3)
     bpy.ops.eigenparts.write_outputs(outputs=OUTPUTS, softness=0.1)
     row = obj.data.eigenparts.rows[1]
     row.title, row.color = "Mine", (0.1, 0.2, 0.3)
-    return obj
 
 
 @pytest.fixture
-def corrected(divided):
+def corrected(scene, small_star):
     """The same with a split, a moved border and a painted part."""
+    return scene(corrected_star, small_star)
+
+
+def corrected_star(small_star):
+    divided_star(small_star)
+    divided = bpy.context.object
     first, second = (row.part for row in divided.data.eigenparts.rows if row.part in (1, 2))
     bpy.ops.eigenparts.split_part(part=first, position=0.3)
     bpy.ops.eigenparts.move_border(part=second, offset=-0.05)
     divided.data.polygons.foreach_set("select", [face < 20 for face in range(len(divided.data.polygons))])
     bpy.ops.eigenparts.paint_part(new=True)
     assert len(divided.data.eigenparts.correction_rows) == 3
-    return divided
 
 
 @pytest.fixture
-def registered(divided, small_star):
-    """The same, registered to another."""
+def registered(scene, small_star):
+    """A star with all outputs, registered to another."""
+    return scene(registered_star, small_star)
+
+
+def registered_star(small_star):
+    divided_star(small_star)
+    divided = bpy.context.object
     add_object(1.1 * small_star.vertices, small_star.triangles, "reference")
     bpy.ops.eigenparts.analyze(order="1")
     bpy.ops.eigenparts.register_selected(order="1")
     bpy.context.view_layer.objects.active = divided
-    return divided
 
 
 @pytest.fixture
-def apart(small_star):
+def apart(scene, small_star):
     """Two stars in one mesh, each analyzed by itself, the first with a split and a level of its own."""
+    return scene(stars_apart, small_star)
+
+
+def stars_apart(small_star):
     both = joined(small_star, TriangleMesh(0.7 * small_star.vertices + [6, 0, 0], small_star.triangles))
     obj = add_object(both.vertices, both.triangles)
     bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=4, order="1", shells="SEPARATE")
@@ -79,7 +96,6 @@ def apart(small_star):
     bpy.ops.eigenparts.split_part(part=1, position=0.3)
     bpy.ops.eigenparts.set_branch_level(part=1, level=1)
     assert len(obj.data.eigenparts.correction_rows) == 2
-    return obj
 
 
 @pytest.fixture

@@ -25,13 +25,12 @@ READERS = {
 
 
 @pytest.fixture
-def newer(star_object):
+def newer(analyzed):
     """The star as the next version of the state would leave it, with something that is not known yet."""
-    bpy.ops.eigenparts.analyze(order="1")
-    star_object.data[STATE]["schema"] += 1
-    star_object.data[STATE]["to come"] = {"of": "the next version"}
-    star_object.data.polygons[0].select = True
-    return star_object
+    analyzed.data[STATE]["schema"] += 1
+    analyzed.data[STATE]["to come"] = {"of": "the next version"}
+    analyzed.data.polygons[0].select = True
+    return analyzed
 
 
 def all_of(mesh):

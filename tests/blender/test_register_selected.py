@@ -28,17 +28,21 @@ def add_pose(character, pose, seed=None):
 
 
 @pytest.fixture
-def fist(character):
-    """A fist to register, its mesh shuffled so that nothing corresponds by number."""
-    return add_pose(character, "fist", seed=0)
+def rest(scene, character):
+    """The reference: active, analyzed and divided."""
+    return scene(analyzed_hand_and_fist, character)
 
 
 @pytest.fixture
-def rest(fist, character):
-    """The reference: active, analyzed and divided."""
-    obj = add_pose(character, "rest")
+def fist(rest):
+    """A fist to register, its mesh shuffled so that nothing corresponds by number."""
+    return bpy.data.objects["fist"]
+
+
+def analyzed_hand_and_fist(character):
+    add_pose(character, "fist", seed=0)
+    add_pose(character, "rest")
     assert bpy.ops.eigenparts.analyze() == {"FINISHED"}
-    return obj
 
 
 @pytest.fixture(scope="module")
