@@ -110,7 +110,7 @@ def _show(mesh: bpy.types.Mesh, arcs: list[np.ndarray], level: int, mode: str, s
 
 
 def _tell_change(operator: bpy.types.Operator, state: MeshState, before: dict[int, float]) -> None:
-    """Tell which part a cut has changed most if that is notable: what hangs together within faces only falls apart."""
+    """Warn of the part that a cut has changed most if it is notable: what hangs together within faces falls apart."""
     after = state.summary.shares
     change = {part: abs(after.get(part, 0.0) - before.get(part, 0.0)) for part in {**before, **after} if part}
     part = max(change, key=change.__getitem__, default=0)

@@ -97,7 +97,7 @@ def _blocks() -> Iterator[bpy.types.ID]:
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    """What a mesh has of ours, and where what is ours stands among what is the user's.
+    """All that a mesh has of ours, and the places it has among what is the user's.
 
     Attributes
     ----------

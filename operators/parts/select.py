@@ -66,7 +66,7 @@ def select_faces_of(mesh: bpy.types.Mesh, part: int) -> None:
 
 
 def selected_faces(mesh: bpy.types.Mesh) -> np.ndarray:
-    """Tell which faces (F,) of a mesh that is not in edit mode are selected."""
+    """Mask (F,) of the selected faces of a mesh that is not in edit mode."""
     selection = np.empty(len(mesh.polygons), dtype=bool)
     mesh.polygons.foreach_get("select", selection)
     return selection

@@ -34,7 +34,7 @@ def _set_softness(settings: "OutputSettings", width: float) -> None:
 
 
 class OutputSettings:
-    """What the parts of a mesh are written to."""
+    """The outputs that a mesh is to have."""
 
     softness: FloatProperty(
         name="Softness",
