@@ -8,6 +8,7 @@ import bpy
 
 from ..compute.progress import silent
 from ..operators.mesh_data import mesh_arrays
+from ..operators.mesh_state.state import read
 from ..operators.outputs import part_writer
 from ..operators.parts.analyze import analyze_arrays
 from . import formats
@@ -34,7 +35,7 @@ class Segment:
 
     def _divide(self, obj: bpy.types.Object) -> Report:
         mesh = obj.data
-        part_writer.refuse_foreign_results(mesh)
+        part_writer.refuse_foreign_results(read(mesh))
         outcome = analyze_arrays(mesh_arrays.read_mesh(mesh), engine_options(mesh, self._options), silent)
         warnings = store(mesh, outcome)
         labels = part_writer.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))

@@ -54,6 +54,7 @@ from .registration.parts.transferred_labels import divisible as divisible
 from .segmentation.borders.edge_borders import shortened_borders as shortened_borders
 from .segmentation.borders.edge_profile import EdgeProfile as EdgeProfile
 from .segmentation.borders.edge_profile import vertex_heights as vertex_heights
+from .segmentation.borders.level_set_borders import Crossings as Crossings
 from .segmentation.borders.level_set_borders import cross_edges as cross_edges
 from .segmentation.edits.corrections import CORRECTION_KINDS as CORRECTION_KINDS
 from .segmentation.edits.corrections import LEVEL as LEVEL
@@ -90,6 +91,7 @@ from .segmentation.hierarchy.nesting import first_own_part as first_own_part
 from .segmentation.hierarchy.nesting import number_behind as number_behind
 from .segmentation.parts.function_hints import FunctionHint as FunctionHint
 from .segmentation.parts.function_hints import judge_eigenfunctions as judge_eigenfunctions
+from .segmentation.parts.part_labels import BranchLabels as BranchLabels
 from .segmentation.parts.part_labels import Parts as Parts
 from .segmentation.parts.part_labels import Segmentation as Segmentation
 from .segmentation.parts.part_labels import label_behind as label_behind

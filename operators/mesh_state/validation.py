@@ -72,6 +72,6 @@ def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
     )
 
 
-def lie_within(indices: np.ndarray, start: int, stop: int) -> bool:
+def lie_within(indices: np.ndarray, start: float, stop: float) -> bool:
     """Whether all indices are at least ``start`` and below ``stop``."""
     return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)
