@@ -91,7 +91,11 @@ def number_parts(table: PartTable, parts: compute.Parts) -> PartTable:
 
 def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str, Any]:
     """Return a table as groups of the state, only those that are not as they were before if that is given."""
-    columns = {PART_NUMBERS: table.places, PART_NAMES: table.names, PART_COLOURS: table.colours}
+    columns: dict[str, dict[int, Any]] = {
+        PART_NUMBERS: table.places,
+        PART_NAMES: table.names,
+        PART_COLOURS: table.colours,
+    }
     if before is not None:
         stored = {PART_NUMBERS: before.places, PART_NAMES: before.names, PART_COLOURS: before.colours}
         columns = {name: column for name, column in columns.items() if column != stored[name]}
@@ -102,7 +106,12 @@ def unpacked_table(get: Callable[[str], Any]) -> PartTable:
     """Return a table as far as it can be understood, from a call that gives a stored group by its name."""
     places = _rows(get(PART_NUMBERS), 2, ("i",))
     names = {part: name for part, name in _by_part(get(PART_NAMES)).items() if isinstance(name, str)}
-    return PartTable(places, names, _rows(get(PART_COLOURS), 3, ("f", "d")))
+    return replace(unpacked_colours(get), places=places, names=names)
+
+
+def unpacked_colours(get: Callable[[str], Any]) -> PartTable:
+    """Return a table with the colours alone, likewise."""
+    return PartTable(colours=_rows(get(PART_COLOURS), 3, ("f", "d")))
 
 
 def in_tree_order(parts: compute.Parts) -> Iterator[tuple[int, int]]:

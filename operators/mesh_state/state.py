@@ -184,6 +184,11 @@ class MeshState:
         return part_table.unpacked_table(self.get)
 
     @cached_property
+    def part_colours(self) -> PartTable:
+        """The colours of the parts alone, which the list asks for at every redraw."""
+        return part_table.unpacked_colours(self.get)
+
+    @cached_property
     def registration(self) -> Registration | None:
         """The registration of the mesh; None if it shows parts of its own."""
         group = self.get(schema.REGISTRATION)

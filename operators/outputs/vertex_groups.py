@@ -1,5 +1,7 @@
 """Output: a vertex group for each part, with hard borders or softened over a width on the surface."""
 
+from collections.abc import Iterable
+
 import bpy
 import numpy as np
 
@@ -71,7 +73,7 @@ def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) 
     return {part: obj.vertex_groups[name] for part, name in _own_groups(mesh).items()}
 
 
-def _drop(obj: bpy.types.Object, names: list[str]) -> None:
+def _drop(obj: bpy.types.Object, names: Iterable[str]) -> None:
     active = obj.vertex_groups.active
     active_name = active.name if active else ""
     for name in names:

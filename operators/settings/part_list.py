@@ -19,7 +19,7 @@ def _set_name(row: "EigenpartsPartRow", name: str) -> None:
 
 
 def _colour(row: "EigenpartsPartRow") -> tuple[float, ...]:
-    return tuple(read(row.id_data).parts.colours_of(row.part + 1)[row.part, :3])
+    return tuple(read(row.id_data).part_colours.colours_of(row.part + 1)[row.part, :3])
 
 
 @shown_in_panel
