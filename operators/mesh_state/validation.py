@@ -42,7 +42,10 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
 
 def _are_sound_measures(measures: compute.ArcMeasures, n_arcs: int) -> bool:
     columns = (measures.height, measures.closing_length, measures.longest, measures.roundness)
-    return all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns)
+    # The longest level set is as long as the one where the arc closes, which is divided by it.
+    return all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns) and bool(
+        (measures.closing_length <= measures.longest).all()
+    )
 
 
 def _are_sound_shells(tree: compute.ArcTree) -> bool:
