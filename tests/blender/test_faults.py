@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
+from tests import shapes
 from tests.blender.conftest import add_object, analyzed_star, values_of
 from tests.blender.drawn import draw_panels
 from tests.blender.failing import (
@@ -18,6 +19,13 @@ from tests.blender.failing import (
     module_of_operators,
     object_as_it_is,
 )
+
+
+@pytest.fixture(scope="module")
+def star():
+    """A small one: everything is done to it again and again."""
+    return shapes.star(n_arms=5, n_subdivisions=2)
+
 
 WRITERS = (
     *("state.write_attribute", "state.packed", "state.packed_array", "state.remove_own_attributes"),
