@@ -37,21 +37,24 @@ def star_object(star):
 
 
 @pytest.fixture(scope="session")
-def saved_scenes(tmp_path_factory):
-    """The folder of the scenes that were made so far."""
-    return tmp_path_factory.mktemp("scenes")
+def saved_scenes():
+    """The files of the scenes that were made so far, with what they were made of."""
+    return {}
 
 
 @pytest.fixture
-def scene(fresh_scene, saved_scenes):
+def scene(fresh_scene, saved_scenes, tmp_path_factory):
     """Open the scene that a function makes, and return its active object: it is made once, and a file from then on."""
 
     def opened(make, *arguments):
-        path = saved_scenes / f"{make.__module__}.{make.__name__}.blend"
-        if not path.is_file():
+        key = make, *map(id, arguments)
+        if key not in saved_scenes:
             make(*arguments)
-            bpy.ops.wm.save_as_mainfile(filepath=str(path))
-        bpy.ops.wm.open_mainfile(filepath=str(path))
+            path = str(tmp_path_factory.mktemp("scene") / f"{make.__name__}.blend")
+            bpy.ops.wm.save_as_mainfile(filepath=path)
+            # The arguments are kept too, so that no other one has their place in memory.
+            saved_scenes[key] = path, arguments
+        bpy.ops.wm.open_mainfile(filepath=saved_scenes[key][0])
         return bpy.context.object
 
     return opened

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
+from tests import shapes
 from tests.blender.conftest import add_object, analyzed_star, values_of
 from tests.blender.drawn import draw_panels
 from tests.blender.failing import (
@@ -16,6 +17,13 @@ from tests.blender.failing import (
     groups_of,
     object_as_it_is,
 )
+
+
+@pytest.fixture(scope="module")
+def star():
+    """A small one: everything is done to it again and again."""
+    return shapes.star(n_arms=5, n_subdivisions=2)
+
 
 WRITERS = (
     *("mesh_arrays.write_attribute", "stored_analysis.packed", "stored_analysis.packed_array"),
