@@ -156,10 +156,10 @@ def every_level(obj: Any) -> None:
     """Show every level in both modes, and end at the default one."""
     import bpy
 
-    from eigenparts.operators.mesh_state import state
+    from eigenparts.operators.mesh_state.state import read
 
     _select(obj)
-    n_levels = state.summarize(obj.data).n_levels if state.is_analyzed(obj.data) else 0
+    n_levels = 1 + read(obj.data).highest_level if read(obj.data).is_readable else 0
     for mode in ("FEATURES", "NESTED"):
         for level in range(n_levels):
             bpy.ops.eigenparts.segment(level=level, mode=mode)

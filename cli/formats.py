@@ -14,7 +14,7 @@ from .off import read_off, write_off
 
 @dataclass(frozen=True)
 class Format:
-    """How one kind of file is read, and written with what it can hold of the parts."""
+    """A kind of file: read, and written with what it can hold of the parts."""
 
     read: Callable[[Path], None]
     write: Callable[[Path], None]

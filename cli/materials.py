@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ..operators.mesh_data.mesh_arrays import read_own_integers
-from ..operators.mesh_state import part_table, state
+from ..operators.mesh_state.state import is_analyzed, read
 from ..operators.outputs.part_writer import PART
 from .part_names import name_of_part, names_of_parts
 
@@ -12,14 +12,14 @@ from .part_names import name_of_part, names_of_parts
 def give_parts_materials() -> None:
     """Replace the materials of all divided meshes that are open, one for each part."""
     for mesh in {obj.data for obj in bpy.data.objects if obj.type == "MESH"}:
-        if state.is_analyzed(mesh) and PART.name in mesh.attributes:
+        if is_analyzed(mesh) and PART.name in mesh.attributes:
             _give_materials(mesh)
 
 
 def _give_materials(mesh: bpy.types.Mesh) -> None:
     labels = read_own_integers(mesh, PART)
     present, material_index = np.unique(labels, return_inverse=True)
-    colours, given = part_table.colours(mesh, int(labels.max(initial=0)) + 1), names_of_parts(mesh)
+    colours, given = read(mesh).parts.colours_of(int(labels.max(initial=0)) + 1), names_of_parts(mesh)
     mesh.materials.clear()
     for label in present.tolist():
         mesh.materials.append(_material(name_of_part(label, given), colours[label].tolist()))

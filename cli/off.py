@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from ..operators.mesh_data.mesh_arrays import read_own_integers
-from ..operators.mesh_state import part_table, state
+from ..operators.mesh_state.state import is_analyzed, read
 from ..operators.messages.user_errors import Refusal
 from ..operators.outputs.part_writer import PART
 
@@ -61,12 +61,12 @@ def write_off(path: Path) -> None:
 
 def _labels(mesh: bpy.types.Mesh) -> np.ndarray:
     """Return the part of each face; all body where the mesh is not divided."""
-    divided = state.is_analyzed(mesh) and PART.name in mesh.attributes
+    divided = is_analyzed(mesh) and PART.name in mesh.attributes
     return read_own_integers(mesh, PART) if divided else np.zeros(len(mesh.polygons), dtype=int)
 
 
 def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:
     """Return the colour of each label as the format wants it, "230 159 0"."""
-    linear = part_table.colours(mesh, n_labels)[:, :3]
+    linear = read(mesh).parts.colours_of(n_labels)[:, :3]
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return [" ".join(map(str, row)) for row in np.rint(255 * srgb).astype(int).tolist()]

@@ -1,4 +1,4 @@
-"""What is said of each file: a report that programs read, and a line for people."""
+"""Reports of files: values that programs read, and a line for people."""
 
 import json
 from collections.abc import Iterable
@@ -66,7 +66,7 @@ def as_document(reports: list[Report]) -> str:
 
 
 def sentence(report: Report) -> str:
-    """Return what people want to know of a file that went well."""
+    """Return a line for people about a file that went well."""
     counts = ", ".join(_counts(row) for row in report["objects"] if "error" not in row)
     return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}"
 

@@ -1,4 +1,4 @@
-"""Which files need not be done again: the report kept with a result says what it was made of."""
+"""Finished files, which need not be done again: the report kept with a result says what it was made of."""
 
 import json
 from collections.abc import Iterator

@@ -14,23 +14,23 @@ from .suppress_output import blender_is_quiet
 
 
 class Command(Protocol):
-    """What is to be done with each file."""
+    """A command as it is done with each file."""
 
     @property
     def settings(self) -> Report:
-        """What the results depend on besides the files."""
+        """All that the results depend on besides the files."""
 
-    def open_and_divide(self, path: Path) -> list[Report]:
-        """Leave a file open with its meshes divided, and return a row for each."""
+    def open_and_process(self, path: Path) -> list[Report]:
+        """Leave a file open with its meshes changed, and return a row for each."""
 
 
-def work_here(jobs: Iterable[Job], command: Command) -> Iterator[Report]:
+def run_in_this_process(jobs: Iterable[Job], command: Command) -> Iterator[Report]:
     """Yield a report for each file when it is done."""
     for job in jobs:
         yield _report(job, lambda job=job: _do(job, command))
 
 
-def failed(job: Job, problem: str) -> Report:
+def failed_report(job: Job, problem: str) -> Report:
     """Return the report of a file that was not even begun."""
     return {"file": str(job.path), "error": problem, "seconds": 0.0}
 
@@ -54,7 +54,7 @@ def _do(job: Job, command: Command) -> Report:
     if not job.path.is_file():
         raise Refusal("there is no such file.")
     report = {"digest": digest_of(job.path), "settings": command.settings}
-    report["objects"] = command.open_and_divide(job.path)
+    report["objects"] = command.open_and_process(job.path)
     if problems := problems_of(report["objects"]):
         report["error"] = problems
     if any("error" not in row for row in report["objects"]):

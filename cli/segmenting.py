@@ -7,11 +7,9 @@ from typing import Any
 import bpy
 
 from ..compute.progress import silent
-from ..operators.mesh_data import mesh_arrays
-from ..operators.outputs import part_writer
-from ..operators.parts.analyze import analyze_arrays
+from ..operators.parts import mesh_segmentation
 from . import formats
-from .objects import chosen, engine_options, report_each, row_of, store
+from .objects import analysis_settings, chosen_objects, report_each, row_of
 from .report import Report
 
 
@@ -23,22 +21,20 @@ class Segment:
 
     @property
     def settings(self) -> Report:
-        """What the results depend on besides the files."""
+        """All that the results depend on besides the files."""
         options = self._options
         given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
         return {"command": "segment", **given, "choice": choice_of(options)}
 
-    def open_and_divide(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[Report]:
         """Leave a file open with its meshes divided, and return a row for each."""
-        return report_each(chosen(formats.load(path), self._options.object), self._divide)
+        return report_each(chosen_objects(formats.load(path), self._options.object), self._divide)
 
     def _divide(self, obj: bpy.types.Object) -> Report:
-        mesh = obj.data
-        part_writer.refuse_foreign_results(mesh)
-        outcome = analyze_arrays(mesh_arrays.read_mesh(mesh), engine_options(mesh, self._options), silent)
-        warnings = store(mesh, outcome)
-        labels = part_writer.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))
-        return row_of(obj, labels, outcome, warnings)
+        given = mesh_segmentation.read(bpy.context, obj, analysis_settings(self._options))
+        result = mesh_segmentation.analyze(given, silent)
+        segmented = mesh_segmentation.write(obj.data, result, mode=self._options.mode, choice=choice_of(self._options))
+        return row_of(obj, segmented.labels, result, segmented.messages)
 
 
 def choice_of(options: argparse.Namespace) -> dict[str, Any]:

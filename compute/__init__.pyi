@@ -5,6 +5,11 @@ from .analysis import Analysis as Analysis
 from .analysis import analyze as analyze
 from .analysis import reeb_graph as reeb_graph
 from .analysis import zero_level as zero_level
+from .choices import BOUNDARIES as BOUNDARIES
+from .choices import FIELDS as FIELDS
+from .choices import MODES as MODES
+from .choices import ORDERS as ORDERS
+from .choices import SHELLS as SHELLS
 from .errors import Cancelled as Cancelled
 from .errors import EngineError as EngineError
 from .errors import FieldError as FieldError
@@ -84,7 +89,6 @@ from .segmentation.hierarchy.levels import NOISE_THRESHOLD as NOISE_THRESHOLD
 from .segmentation.hierarchy.levels import Hierarchy as Hierarchy
 from .segmentation.hierarchy.nesting import first_own_part as first_own_part
 from .segmentation.hierarchy.nesting import number_behind as number_behind
-from .segmentation.modes import MODES as MODES
 from .segmentation.parts.function_hints import FunctionHint as FunctionHint
 from .segmentation.parts.function_hints import judge_eigenfunctions as judge_eigenfunctions
 from .segmentation.parts.part_labels import BranchLabels as BranchLabels
@@ -99,6 +103,7 @@ from .skeletons.layout import BoneLayout as BoneLayout
 from .skeletons.layout import LimbLayout as LimbLayout
 from .skeletons.symmetry import mirror_parts as mirror_parts
 from .skeletons.symmetry import sides as sides
+from .surface.cleaning import Surface as Surface
 from .surface.cleaning import analyzed_surface as analyzed_surface
 from .surface.heat_smoothing import softened_labels as softened_labels
 from .surface.mesh import TriangleMesh as TriangleMesh

@@ -7,6 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .choices import NESTED
 from .errors import LevelError, RegistrationError
 from .fem.eigenbasis import Eigenbasis, solve_on_surface
 from .fem.matching_basis import solve_for_matching
@@ -33,7 +34,6 @@ from .segmentation.faces.part_tree import PartTree
 from .segmentation.hierarchy.arc_measures import ArcMeasures, measure_arcs
 from .segmentation.hierarchy.levels import Hierarchy, build_hierarchy
 from .segmentation.hierarchy.shell_bodies import with_bodies
-from .segmentation.modes import NESTED
 from .segmentation.parts.part_labels import Segmentation, label_branches
 from .segmentation.parts.subparts import inserted
 from .segmentation.parts.zero_level import divide_at_zero

@@ -22,7 +22,7 @@ load_extension()
 from eigenparts.cli import formats
 from eigenparts.cli.suppress_output import blender_is_quiet as quiet
 from eigenparts.operators.blender.known_values import mesh_of, present
-from eigenparts.operators.mesh_state import state
+from eigenparts.operators.mesh_state.state import read
 from eigenparts.operators.messages.user_errors import Refusal
 from tools.extension_operators import run_operator
 from tools.render import render, side_by_side
@@ -112,7 +112,7 @@ def _divide(obj: bpy.types.Object, folder: Path) -> Row:
 
 def _picture(obj: bpy.types.Object, folder: Path, name: str, levels: dict[str, Level]) -> str:
     run_operator("segment", **LEVELS[name])
-    summary = state.summarize(mesh_of(obj))
+    summary = read(mesh_of(obj)).summary
     parts: list[Part] = [
         {"id": part, "share_of_area": round(share, 4), "faces": n_faces} for part, share, n_faces in summary.parts
     ]

@@ -1,4 +1,4 @@
-"""What bones are called: after their parts, numbered outward, with the suffix that Blender mirrors poses by."""
+"""Names of bones: after their parts, numbered outward, with the suffix that Blender mirrors poses by."""
 
 from collections import Counter
 

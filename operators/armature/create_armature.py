@@ -5,13 +5,13 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ..mesh_state import part_table
-from ..messages.sentences import tell
+from ..jobs.mesh_handle import MeshHandle
+from ..mesh_state.state import read
+from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal
-from ..parts.analyze import Ticket
 from .bone_names import name_bones
 from .skeleton_options import ArmatureOptions
-from .skeleton_request import Laid, SkeletonRequest, part_names
+from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
 
 # Length of the root bone in radii of the body around it.
 ROOT_LENGTH = 0.6
@@ -37,7 +37,7 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
     bl_label = "Create Armature"
     bl_options = {"REGISTER", "UNDO"}
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., NamedSkeleton], MeshHandle]:
         if self.weights != "NONE" and any(modifier.type == "ARMATURE" for modifier in context.object.modifiers):
             raise Refusal(ALREADY_BOUND)
         return super().begin(context)
@@ -45,21 +45,23 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
     def needs_weights(self) -> bool:
         return self.weights == "PARTS"
 
-    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: Laid) -> None:
+    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton) -> Messages:
         skeleton = laid.skeleton
         taken = {group.name for group in obj.vertex_groups}
         names = name_bones(skeleton.parent, skeleton.part, part_names(obj.data, skeleton), laid.pairing, taken)
         armature = add_armature(context, obj, laid, names)
+        infos, is_bound = (f"{len(names)} bones in {armature.name}.",), True
         if self.weights == "PARTS":
             bind(obj, armature, names, laid.weights)
         elif self.weights == "AUTOMATIC":
             bind_automatically(context, obj, armature)
-            if not _is_bound(obj, names):
-                tell(self, "WARNING", NOT_BOUND)
-        tell(self, "INFO", f"{len(names)} bones in {armature.name}.")
+            is_bound = _is_bound(obj, names)
+        return Messages(infos, () if is_bound else (NOT_BOUND,))
 
 
-def add_armature(context: bpy.types.Context, obj: bpy.types.Object, laid: Laid, names: list[str]) -> bpy.types.Object:
+def add_armature(
+    context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton, names: list[str]
+) -> bpy.types.Object:
     """Add the armature of a skeleton where an object is, and make it the active one."""
     armature = bpy.data.objects.new(f"{obj.name} rig", bpy.data.armatures.new(f"{obj.name} rig"))
     for collection in obj.users_collection:
@@ -106,7 +108,7 @@ def _is_bound(obj: bpy.types.Object, names: list[str]) -> bool:
     return any(element.group in own for vertex in obj.data.vertices for element in vertex.groups)
 
 
-def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: Laid, names: list[str]) -> None:
+def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: NamedSkeleton, names: list[str]) -> None:
     skeleton = laid.skeleton
     root = edit_bones.new(names[0])
     root.head = skeleton.joints[0]
@@ -123,9 +125,9 @@ def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: Laid, names: list[
         bone.align_roll(FRONT if is_steep else UP)
 
 
-def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: Laid, names: list[str]) -> None:
+def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: NamedSkeleton, names: list[str]) -> None:
     """Give bones the colours of their parts."""
-    linear = part_table.colours(mesh, int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
+    linear = read(mesh).parts.colours_of(int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     for name, colour in zip(names, srgb.tolist(), strict=True):
         bone = armature.bones[name]

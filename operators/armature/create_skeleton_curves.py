@@ -3,8 +3,8 @@
 import bpy
 import numpy as np
 
-from ..messages.sentences import tell
-from .skeleton_request import Laid, SkeletonRequest, part_names
+from ..messages.sentences import Messages
+from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
 
 # On the curve: the part that each of its splines lies in, by name.
 SPLINE_PARTS = "eigenparts_spline_parts"
@@ -19,7 +19,7 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
     bl_label = "Create Skeleton Curves"
     bl_options = {"REGISTER", "UNDO"}
 
-    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: Laid) -> None:
+    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton) -> Messages:
         skeleton = laid.skeleton
         rows = rows_of_bones(skeleton.parent, skeleton.part, skeleton.loops)
         names = part_names(obj.data, skeleton)
@@ -27,7 +27,7 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
         curve.data[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
         context.view_layer.objects.active = curve
         curve.select_set(True)
-        tell(self, "INFO", f"{len(rows)} splines in {curve.name}.")
+        return Messages((f"{len(rows)} splines in {curve.name}.",))
 
 
 def rows_of_bones(parent: np.ndarray, part: np.ndarray, loops: np.ndarray) -> list[list[int]]:

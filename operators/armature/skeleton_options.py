@@ -1,11 +1,11 @@
-"""What a skeleton can be asked for; the scene keeps it for the panel, the operators take it from scripts."""
+"""Options of a skeleton; the scene keeps them for the panel, the operators take them from scripts."""
 
 import bpy
 from bpy.props import EnumProperty, IntProperty, PointerProperty
 
 
 class SkeletonOptions:
-    """What all operators that lay bones have in common."""
+    """Options of all operators that lay bones."""
 
     bones_in_limbs: IntProperty(
         name="Bones in Limbs",
@@ -17,7 +17,7 @@ class SkeletonOptions:
 
 
 class ArmatureOptions(SkeletonOptions):
-    """What an armature needs as well."""
+    """Options of an armature."""
 
     weights: EnumProperty(
         name="Weights",

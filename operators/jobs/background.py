@@ -19,16 +19,16 @@ _running: Job | None = None
 
 
 class BackgroundOperator:
-    """What long operators have in common; they give ``begin`` and ``finish``.
+    """Base class of long operators; they give ``begin`` and ``finish``.
 
-    ``begin(context)`` reads what is needed and returns work that never touches Blender and a ticket for ``finish``;
-    ``finish(context, ticket, result)`` writes the result. Scripts wait for the work; the window runs it in a thread.
+    ``begin(context)`` reads what is needed and returns work that never touches Blender and a handle for ``finish``;
+    ``finish(context, handle, result)`` writes the result. Scripts wait for the work; the window runs it in a thread.
     """
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         with refusals_told(self):
-            work, ticket = self.begin(context)
-            return self.finish(context, ticket, work(_silent))
+            work, handle = self.begin(context)
+            return self.finish(context, handle, work(_silent))
         return {"CANCELLED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -36,7 +36,7 @@ class BackgroundOperator:
             return self.execute(context)
         unexpected_errors.forget()
         with errors_told(self):
-            work, self._ticket = self.begin(context)
+            work, self._handle = self.begin(context)
             self._job = _start(work)
             self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
             context.window_manager.progress_begin(0, 100)
@@ -58,7 +58,7 @@ class BackgroundOperator:
             return {"PASS_THROUGH"}
         self._leave(context)
         with errors_told(self):
-            return self.finish(context, self._ticket, self._job.result())
+            return self.finish(context, self._handle, self._job.result())
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:

@@ -1,11 +1,11 @@
-"""How far the running job is, for the panel."""
+"""Progress of the running job, for the panel."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, PointerProperty, StringProperty
 
 
 class EigenpartsJobStatus(bpy.types.PropertyGroup):
-    """How far the running job is, for the panel, whether parts are being picked, and what went wrong last."""
+    """Progress of the running job, whether parts are being picked, and the last problem, for the panel."""
 
     is_running: BoolProperty(options={"SKIP_SAVE"})
     job: StringProperty(options={"SKIP_SAVE"})

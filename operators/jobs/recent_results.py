@@ -1,4 +1,4 @@
-"""What was computed last, kept while Blender runs: trying another matching then needs no new analysis.
+"""Results computed last, kept while Blender runs: trying another matching then needs no new analysis.
 
 Nothing depends on it: what is not here any more is computed again.
 """

@@ -1,4 +1,4 @@
-"""How many processor cores the matrix libraries of numpy and scipy use."""
+"""Number of processor cores that the matrix libraries of numpy and scipy use."""
 
 import ctypes
 from collections.abc import Callable, Iterator

@@ -107,6 +107,13 @@ def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float64]:
     return values.astype(np.float64)
 
 
+def face_areas(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
+    """Return the (F,) areas of the faces."""
+    areas = np.empty(len(mesh.polygons), dtype=np.float32)
+    mesh.polygons.foreach_get("area", areas)
+    return areas.astype(np.float64)
+
+
 def polygon_of_triangle(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the (T,) polygon of each triangle."""
     polygons = np.empty(len(mesh.loop_triangles), dtype=np.int32)
@@ -201,6 +208,14 @@ def own_names(mesh: bpy.types.Mesh) -> list[str]:
 def mark_own(mesh: bpy.types.Mesh, names: list[str]) -> None:
     """Mark attributes as ours."""
     _set_own_names(mesh, [*own_names(mesh), *names])
+
+
+def mark_lost(mesh: bpy.types.Mesh, attributes: tuple[OwnAttribute, ...]) -> None:
+    """Mark those of some attributes as ours that a mesh has, of their type and domain, but that are not marked."""
+    marked = own_names(mesh)
+    lost = [own.name for own in attributes if own.name not in marked and own.is_on(mesh)]
+    if lost:
+        mark_own(mesh, lost)
 
 
 def _set_own_names(mesh: bpy.types.Mesh, names: list[str]) -> None:

@@ -6,6 +6,7 @@ where values stand; here, where they are told, they are found again. What is in 
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Literal
 
 import bpy
@@ -19,6 +20,29 @@ PLACE = "{}"
 _VALUE = r"((?:(?!\. ).)*?)"
 
 _patterns: list[tuple[re.Pattern[str], str]] = []
+
+
+@dataclass(frozen=True)
+class Messages:
+    """Sentences about what was done, in English with the values filled in.
+
+    Attributes
+    ----------
+    infos : tuple of str
+        Told in one line.
+    warnings : tuple of str
+        Each told in a line of its own.
+    """
+
+    infos: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def report(self, operator: bpy.types.Operator) -> None:
+        """Let an operator tell the sentences in the language of the user, warnings last and each of them once."""
+        if any(self.infos):
+            tell(operator, "INFO", *self.infos)
+        for warning in dict.fromkeys(self.warnings):
+            tell(operator, "WARNING", warning)
 
 
 def use_tables(tables: Iterable[Iterable[str]]) -> None:

@@ -5,10 +5,10 @@ import numpy as np
 
 from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers, remove_own_attributes, write_attribute
 from .division import Division
+from .output import Output
 
 # What the user had assigned to the faces before; absent if all faces had the first slot.
 PREVIOUS_MATERIAL = OwnAttribute("eigenparts_previous_material", "INT", "FACE")
-ATTRIBUTES = (PREVIOUS_MATERIAL,)
 
 # What is in a slot: a material of the user's, none, or the part that one of ours belongs to.
 Slot = bpy.types.Material | int | None
@@ -164,3 +164,15 @@ def _assign(mesh: bpy.types.Mesh, slots: np.ndarray) -> None:
     if MATERIAL_INDEX not in mesh.attributes:
         mesh.attributes.new(MATERIAL_INDEX, "INT", "FACE")
     mesh.attributes[MATERIAL_INDEX].data.foreach_set("value", np.ascontiguousarray(slots, dtype=np.int32))
+
+
+OUTPUT = Output(
+    "MATERIALS",
+    "Materials",
+    "A material slot for each part; your own assignment comes back",
+    (PREVIOUS_MATERIAL,),
+    write,
+    remove,
+    shows_colours=True,
+    is_compound=True,
+)

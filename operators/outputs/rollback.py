@@ -11,10 +11,11 @@ import numpy as np
 
 from ..mesh_data.attribute_values import STORAGES, read_attribute, store_values
 from ..mesh_data.mesh_arrays import own_names, remove_own_attributes
-from ..mesh_state.state import MOST_LABELS, STATE
+from ..mesh_state.schema import MOST_LABELS
+from ..mesh_state.state import is_analyzed, read
 from ..mesh_state.validation import lie_within
 from . import material_slots, output_registry, vertex_groups
-from .division import PART
+from .division import PART, division_of
 
 # Custom properties that are ours begin so.
 OWN_PROPERTIES = "eigenparts_"
@@ -152,11 +153,17 @@ class _Kept:
         mesh.color_attributes.active_color_name = self.active_colour
         for name, fields in LISTS.items():
             _restore_rows(mesh, name, fields, self.rows[name])
-        if PART.name in self.attributes and STATE in self.properties:
-            labels = self.attributes[PART.name][2].ravel()
-            if lie_within(labels, 0, MOST_LABELS):
-                output_registry.write(mesh, labels, output_registry.COMPOUND)
+        if PART.name in self.attributes and is_analyzed(mesh):
+            _write_compound(mesh, self.attributes[PART.name][2].ravel())
         mesh.update()
+
+
+def _write_compound(mesh: bpy.types.Mesh, labels: np.ndarray) -> None:
+    """Write those outputs of parts (F,) that are more than attributes."""
+    if lie_within(labels, 0, MOST_LABELS):
+        state = read(mesh)
+        division = division_of(labels, state.parts, state.softness)
+        output_registry.write_compound(mesh, division, state.outputs)
 
 
 def _own_properties(mesh: bpy.types.Mesh) -> list[str]:

@@ -6,9 +6,9 @@ import numpy as np
 from ... import compute
 from ..mesh_data.mesh_arrays import read_mesh
 from .division import Division
+from .output import Output
 from .vertex_map import labels_of_vertices
 
-ATTRIBUTES = ()
 # On the mesh: the name of the group of each part.
 OWN_GROUPS = "eigenparts_groups"
 
@@ -105,3 +105,15 @@ def _softened(mesh: bpy.types.Mesh, labels: np.ndarray, width: float) -> tuple[n
     welded = compute.TriangleMesh(arrays.vertices[first], place[arrays.triangles])
     parts, weights = compute.softened_labels(welded, labels[first], width)
     return parts, weights[place]
+
+
+OUTPUT = Output(
+    "VERTEX_GROUPS",
+    "Vertex Groups",
+    "A vertex group for each part, of its name",
+    (),
+    write,
+    remove,
+    is_compound=True,
+    options=("softness",),
+)

@@ -11,9 +11,9 @@ from ..mesh_data.mesh_arrays import (
     write_attribute,
 )
 from .division import Division
+from .output import Output
 
 PART_VERTEX = OwnAttribute("part_vertex", "INT", "POINT")
-ATTRIBUTES = (PART_VERTEX,)
 
 
 def write(mesh: bpy.types.Mesh, division: Division) -> None:
@@ -46,3 +46,14 @@ def majority_label(label_of_corner: np.ndarray, vertex_of_corner: np.ndarray, n_
     if len(vertices):
         label[vertices] = kinds[votes.reshape(len(vertices), len(kinds)).argmax(axis=1)]
     return label
+
+
+OUTPUT = Output(
+    "VERTEX_ATTRIBUTE",
+    "Vertex Attribute",
+    'Attribute "part_vertex": the part of most faces around',
+    (PART_VERTEX,),
+    write,
+    remove,
+    is_default=True,
+)

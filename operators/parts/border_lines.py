@@ -7,7 +7,7 @@ import numpy as np
 
 from ..mesh_data.mesh_arrays import n_corners_of_polygon, read_edges
 from ..mesh_state.state import is_analyzed
-from ..outputs.part_writer import PART
+from ..outputs.division import PART
 
 # By object: a digest of what the lines were made from, and the lines. Redrawing must not cost more than reading.
 _made: dict[int, tuple[bytes, np.ndarray]] = {}

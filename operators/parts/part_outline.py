@@ -5,7 +5,7 @@ import numpy as np
 
 from ..mesh_data.mesh_arrays import n_corners_of_polygon, read_edges
 from ..mesh_state.state import is_analyzed
-from ..outputs.part_writer import PART
+from ..outputs.division import PART
 
 
 def outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.ndarray:

@@ -5,11 +5,10 @@ from bpy.props import FloatVectorProperty
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
-from ..mesh_state import part_table
-from ..mesh_state.state import is_analyzed
+from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import in_language
 from ..messages.user_errors import Refusal, refusals_told
-from ..outputs.part_writer import PART
+from ..outputs.division import PART
 
 HOW = "Click a part; ESC or right click when done."
 NOTHING = "There is no surface here."
@@ -114,7 +113,7 @@ def pick(
     context.view_layer.objects.active = obj
     obj.select_set(True)
     settings.active_row = parts.index(part)
-    return part_table.name_of(obj.data, part)
+    return read(obj.data).parts.name_of(part)
 
 
 def view_under(screen: bpy.types.Screen, x: int, y: int) -> tuple[bpy.types.Area, bpy.types.Region] | None:

@@ -7,7 +7,7 @@ from bpy.props import BoolProperty, IntProperty
 
 from ..mesh_data.mesh_arrays import read_own_integers
 from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
-from ..outputs.part_writer import PART
+from ..outputs.division import PART
 
 
 class EIGENPARTS_OT_select_part(bpy.types.Operator):

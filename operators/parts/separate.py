@@ -6,9 +6,11 @@ import numpy as np
 
 from ..mesh_data.custom_normals import normals_kept
 from ..mesh_data.mesh_arrays import remove_own_attributes
-from ..mesh_state import part_table, state
+from ..mesh_state.schema import ATTRIBUTES
+from ..mesh_state.state import forget, is_analyzed_for, read
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
+from ..outputs.output_registry import result_attributes
 from ..outputs.ownership import mend
 from ..outputs.part_writer import read_labels
 from ..outputs.rollback import nothing_left_behind
@@ -23,7 +25,7 @@ class EIGENPARTS_OT_separate(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+        return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         with refusals_told(self), nothing_left_behind(context):
@@ -42,13 +44,13 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
     As when Blender separates, the object itself stays with the first part, the body if it has faces, so that whatever
     refers to it still does. The pieces keep the outputs that were chosen, and forget the analysis: it was of the whole.
     """
-    mesh = obj.data
-    mend(mesh)
+    mesh, state = obj.data, read(obj.data)
+    mend(mesh, result_attributes(state.outputs))
     labels = read_labels(mesh)
     parts = np.unique(labels).tolist()
     if len(parts) < 2:
         raise Refusal("The mesh is one part; there is nothing to separate.")
-    names = {part: f"{obj.name} {part_table.name_of(mesh, part)}" for part in parts}
+    names = {part: f"{obj.name} {state.parts.name_of(part)}" for part in parts}
     own, *meshes = [_mesh_of_part(mesh, labels == part, names[part]) for part in parts]
     others = [_copy(obj, piece, names[part]) for part, piece in zip(parts[1:], meshes, strict=True)]
     # From here on nothing can fail.
@@ -86,9 +88,9 @@ def _delete_faces(mesh: bpy.types.Mesh, is_dropped: np.ndarray) -> None:
 
 
 def _forget_analysis(mesh: bpy.types.Mesh) -> None:
-    remove_own_attributes(mesh, [own.name for own in state.ATTRIBUTES])
+    remove_own_attributes(mesh, [attribute.name for attribute in ATTRIBUTES])
     mesh.property_unset("eigenparts")
-    state.forget(mesh)
+    forget(mesh)
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_separate,))

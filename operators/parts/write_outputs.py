@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-from ..mesh_state import state
+from ..mesh_state.state import is_analyzed_for, read
 from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs import output_registry, part_writer
 
@@ -19,8 +19,8 @@ class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
         name="Outputs",
         description="What the parts are written to, beside the attribute of the faces; all of it follows the level",
         items=[
-            (key, name, description, 2**i)
-            for i, (key, (name, description, _)) in enumerate(output_registry.OUTPUTS.items())
+            (output.key, output.name, output.description, 2**i)
+            for i, output in enumerate(output_registry.OUTPUTS.values())
         ],
         options={"ENUM_FLAG"},
         default=set(output_registry.DEFAULT),
@@ -34,11 +34,12 @@ class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+        return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        mesh = context.object.data
-        self.outputs, self.softness = set(output_registry.chosen(mesh)), output_registry.softness(mesh)
+        state = read(context.object.data)
+        self.outputs = {output.key for output in output_registry.chosen(state.outputs)}
+        self.softness = state.softness
         return self.execute(context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..mesh_state import state
+from ..mesh_state.state import read
 from ..messages import unexpected_errors
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal
@@ -80,7 +80,7 @@ def _facts_of_object(obj: bpy.types.Object | None) -> list[str]:
 
 def _facts_of_analysis(mesh: bpy.types.Mesh) -> str:
     try:
-        summary = state.summarize(mesh)
+        summary = read(mesh).summary
     except Refusal as refusal:
         return f"Analysis: {refusal}"
     return (

@@ -1,12 +1,9 @@
 """Operator: draw the persistence diagram and the persistence curve of the field into an image."""
 
-from typing import Any
-
 import bpy
 import numpy as np
 
 from ... import compute
-from ..messages.sentences import tell
 from ..parts.fresh_analysis import FreshAnalysis
 from .diagram_picture import Plotted, draw_diagram
 from .lettering import Lettering
@@ -22,14 +19,13 @@ class EIGENPARTS_OT_plot_diagram(FreshAnalysis, bpy.types.Operator):
     bl_label = "Plot Diagram"
     bl_options = {"UNDO"}
 
-    def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
-        title = f"Persistence diagram of {name}, {analysis.field.name}"
+    def show(self, context: bpy.types.Context, obj: bpy.types.Object, analysis: "compute.Analysis") -> str:
+        title = f"Persistence diagram of {obj.name}, {analysis.field.name}"
         plotted = Plotted(title, analysis.diagram, compute.NOISE_THRESHOLD, compute.DEFAULT_THRESHOLD)
         with Lettering() as letters:
-            image = write_image(name, draw_diagram(plotted, letters.triangles))
+            image = write_image(obj.name, draw_diagram(plotted, letters.triangles))
         show_image(context, image)
-        tell(self, "INFO", f'The diagram is in the image "{image.name}".')
-        return {"FINISHED"}
+        return f'The diagram is in the image "{image.name}".'
 
 
 def write_image(name: str, pixels: np.ndarray) -> bpy.types.Image:

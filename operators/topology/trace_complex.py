@@ -1,16 +1,15 @@
 """Operator: put the Morse-Smale complex of the field on the mesh, as curves and dots."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 import numpy as np
 from bpy.props import FloatProperty, IntProperty
 
-from ..mesh_state import state
+from ... import compute
 from ..mesh_state.palette import COMPLEX_COLOURS
 from ..mesh_state.palette import COMPLEX_ROLE as ROLE
-from ..messages.sentences import tell
+from ..mesh_state.state import is_analyzed, read
 from ..outputs.rollback import nothing_left_behind
 from ..parts.fresh_analysis import FreshAnalysis
 
@@ -50,30 +49,28 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
         name="Thickness", description="How thick lines and dots are, as a multiple of the usual", default=1.0, min=0.01
     )
 
-    def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
-        owner = context.scene.objects[name]
+    def show(self, context: bpy.types.Context, owner: bpy.types.Object, analysis: "compute.Analysis") -> str:
         found = traced_complex(analysis, self.level if self.level >= 0 else shown_level(owner.data, analysis))
         size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
         with nothing_left_behind(context):
             lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in found.lines.items()}
             dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in found.dots.items()}
             # What is there from before goes only when there is something to take its place.
-            collection = empty_collection(context, name)
+            collection = empty_collection(context, owner.name)
             for role, data in {**lines, **dots}.items():
                 obj = add_object(collection, owner, role, data)
                 if role in dots:
                     obj["places"] = found.dots[role].ravel().tolist()
         n_dots = sum(len(places) for places in found.dots.values())
-        tell(self, "INFO", f'{n_dots} critical points are in the collection "{collection.name}".')
-        return {"FINISHED"}
+        return f'{n_dots} critical points are in the collection "{collection.name}".'
 
 
-def shown_level(mesh: bpy.types.Mesh, analysis: Any) -> int | None:
+def shown_level(mesh: bpy.types.Mesh, analysis: "compute.Analysis") -> int | None:
     """Return the level that a mesh shows, as far as the analysis has so many; None if it shows none."""
-    return min(state.summarize(mesh).level, analysis.hierarchy.n_levels - 1) if state.is_analyzed(mesh) else None
+    return min(read(mesh).level, analysis.hierarchy.n_levels - 1) if is_analyzed(mesh) else None
 
 
-def traced_complex(analysis: Any, level: int | None) -> TracedComplex:
+def traced_complex(analysis: "compute.Analysis", level: int | None) -> TracedComplex:
     """Return the lines and dots of a level."""
     found = analysis.complex_at_level(level)
     points, separatrices = found.critical_points, found.separatrices

@@ -1,6 +1,7 @@
 """Operator: write the eigenfunctions of a mesh as attributes of its vertices."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 import bpy
@@ -10,12 +11,22 @@ from bpy.props import IntProperty
 from ... import compute
 from ..jobs import background
 from ..jobs.background import BackgroundOperator
+from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data import mesh_arrays
 from ..mesh_data.mesh_arrays import OwnAttribute
+from ..messages.sentences import Messages
 from ..messages.user_errors import can_use_active_mesh
-from ..parts.analyze import Ticket, find_mesh
 
 PREFIX = "eigenfunction_"
+LOOSE_PARTS = "The mesh has {} loose parts; the eigenfunctions are those of the largest, and 0 on the others."
+
+
+@dataclass(frozen=True, eq=False)
+class VertexFunctions:
+    """Eigenfunctions as (V, k) float32 on the vertices, and what is to be told of the mesh."""
+
+    values: np.ndarray
+    warnings: tuple[str, ...]
 
 
 class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator):
@@ -37,19 +48,20 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator)
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., np.ndarray], Ticket]:
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., VertexFunctions], MeshHandle]:
         mesh = context.object.data
         mesh_arrays.refuse_foreign(mesh, _attributes(self.n_functions))
-        ticket = Ticket(mesh.session_uid, mesh_arrays.fingerprint(mesh))
-        return partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions), ticket
+        solve = partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions)
+        return solve, MeshHandle.of(context.object)
 
-    def finish(self, context: bpy.types.Context, ticket: Ticket, result: np.ndarray) -> set[str]:
-        mesh = find_mesh(ticket)
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, result: VertexFunctions) -> set[str]:
+        mesh = handle.find_mesh()
         old = [name for name in mesh_arrays.own_names(mesh) if name.startswith(PREFIX)]
         mesh_arrays.remove_own_attributes(mesh, old)
-        for own, function in zip(_attributes(self.n_functions), result.T, strict=True):
+        for own, function in zip(_attributes(self.n_functions), result.values.T, strict=True):
             mesh_arrays.write_attribute(mesh, own, function)
         mesh.update()
+        Messages(warnings=result.warnings).report(self)
         return {"FINISHED"}
 
 
@@ -59,11 +71,13 @@ def _attributes(n_functions: int) -> tuple[OwnAttribute, ...]:
 
 def _functions_on_vertices(
     arrays: mesh_arrays.MeshArrays, n_functions: int, progress: Callable[[float, str], None]
-) -> np.ndarray:
-    """Return (V, k) float32; knows nothing of Blender, so any thread may do it."""
+) -> VertexFunctions:
+    """Return the smoothest functions; knows nothing of Blender, so any thread may do it."""
     mesh = compute.TriangleMesh(arrays.vertices, arrays.triangles)
     basis = compute.solve_eigenbasis(mesh, n_functions, progress=progress)
-    return np.float32(basis.functions[: len(arrays.vertices)])
+    values = np.float32(basis.functions[: len(arrays.vertices)])
+    n_parts = basis.surface.n_components
+    return VertexFunctions(values, (LOOSE_PARTS.format(n_parts),) if n_parts > 1 else ())
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_write_eigenfunctions,))

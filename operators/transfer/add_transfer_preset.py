@@ -3,7 +3,7 @@
 import bpy
 from bl_operators.presets import AddPresetBase
 
-from .transfer import TransferOptions
+from .transfer_options import TransferOptions
 
 
 class EIGENPARTS_OT_add_transfer_preset(AddPresetBase, bpy.types.Operator):

@@ -8,11 +8,11 @@ import numpy as np
 
 from ..mesh_data import mesh_arrays
 from ..mesh_data.attribute_values import STORAGES, read_attribute
-from ..mesh_state import state
+from ..mesh_state.schema import ATTRIBUTES
 from ..messages.user_errors import Refusal
 from ..outputs import material_slots
 from ..outputs.part_writer import PART, read_labels
-from . import layers
+from . import layer_choices, layers
 from .layers import Layer
 
 # Attributes that begin with a point are Blender's own, but these are made by hand.
@@ -23,13 +23,13 @@ ABSOLUTE = "The shape keys of {} are absolute; only relative ones can be transfe
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which layers are wanted.
+class LayerChoice:
+    """The layers that are wanted.
 
     Attributes
     ----------
     kinds : frozenset of str
-        "PARTS", "FACES", "GROUPS", "ATTRIBUTES", "COLORS", "UVS", "SHAPE_KEYS", "MATERIALS".
+        Some of ``layer_choices.LAYERS``.
     groups : str
         "ALL", "DEFORM" or "NAMED".
     group_names : tuple of str
@@ -43,19 +43,19 @@ class Choice:
     swaps_sides: bool
 
 
-def read_layers(obj: bpy.types.Object, choice: Choice) -> list[Layer]:
+def read_layers(obj: bpy.types.Object, choice: LayerChoice) -> list[Layer]:
     """Return the chosen layers of an object, under the names that they get on the targets."""
     readers = {
-        "PARTS": _parts,
-        "GROUPS": lambda obj: _groups(obj, _chosen_groups(obj, choice)),
-        "SHAPE_KEYS": _shape_keys,
-        "MATERIALS": _materials,
+        layer_choices.PARTS: _parts,
+        layer_choices.GROUPS: lambda obj: _groups(obj, _chosen_groups(obj, choice)),
+        layer_choices.SHAPE_KEYS: _shape_keys,
+        layer_choices.MATERIALS: _materials,
     }
-    found = [layer for kind, read in readers.items() if kind in choice.kinds for layer in read(obj)]
-    found += [layer for kind, layer in _attributes(obj.data) if kind in choice.kinds]
-    if not found:
+    given = [layer for kind, read in readers.items() if kind in choice.kinds for layer in read(obj)]
+    given += [layer for kind, layer in _attributes(obj.data) if kind in choice.kinds]
+    if not given:
         raise Refusal(f"{obj.name} has none of the layers that were chosen.")
-    return [_with_side(layer) for layer in found] if choice.swaps_sides else found
+    return [_with_side(layer) for layer in given] if choice.swaps_sides else given
 
 
 def _with_side(layer: Layer) -> Layer:
@@ -70,7 +70,7 @@ def _parts(obj: bpy.types.Object) -> Iterator[Layer]:
         yield Layer(layers.PARTS, PART.name, read_labels(mesh).reshape(-1, 1), "INT")
 
 
-def _chosen_groups(obj: bpy.types.Object, choice: Choice) -> list[str]:
+def _chosen_groups(obj: bpy.types.Object, choice: LayerChoice) -> list[str]:
     present = [group.name for group in obj.vertex_groups]
     if choice.groups == "NAMED":
         missing = [name for name in choice.group_names if name not in present]
@@ -142,13 +142,17 @@ def _materials(obj: bpy.types.Object) -> Iterator[Layer]:
 
 def _attributes(mesh: bpy.types.Mesh) -> Iterator[tuple[str, Layer]]:
     """Yield the attributes that are not ours, each with the kind of layer that it belongs to."""
-    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in state.ATTRIBUTES)}
+    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in ATTRIBUTES)}
     for attribute in mesh.attributes:
         kind = _kind_of(attribute)
         is_blenders = attribute.name.startswith(".") and attribute.name not in MADE_BY_HAND
         if kind and not is_blenders and attribute.name not in ours and attribute.name not in NOT_ATTRIBUTES:
             layer = Layer(
-                attribute.domain, attribute.name, read_attribute(attribute), attribute.data_type, is_uv=kind == "UVS"
+                attribute.domain,
+                attribute.name,
+                read_attribute(attribute),
+                attribute.data_type,
+                is_uv=kind == layer_choices.UVS,
             )
             yield kind, layer
 
@@ -158,7 +162,7 @@ def _kind_of(attribute: bpy.types.Attribute) -> str:
     if attribute.data_type not in STORAGES:
         return ""
     if attribute.data_type in ("FLOAT_COLOR", "BYTE_COLOR") and attribute.domain in ("POINT", "CORNER"):
-        return "COLORS"
+        return layer_choices.COLORS
     if attribute.domain == "CORNER":
-        return "UVS" if attribute.data_type == "FLOAT2" else ""
-    return {"POINT": "ATTRIBUTES", "FACE": "FACES"}.get(attribute.domain, "")
+        return layer_choices.UVS if attribute.data_type == "FLOAT2" else ""
+    return {"POINT": layer_choices.ATTRIBUTES, "FACE": layer_choices.FACES}.get(attribute.domain, "")

@@ -24,10 +24,13 @@ MOST_UV_LAYERS = 8
 
 @dataclass(frozen=True)
 class Mix:
-    """How much of what comes is taken: a factor, and the name of a vertex group that holds a share of it."""
+    """Share of the new values: a factor, and the name of a vertex group whose weights it is multiplied with."""
 
     factor: float
     mask: str
+
+
+WHOLE = Mix(1.0, "")
 
 
 def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> None:
@@ -116,7 +119,7 @@ def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: n
 
 
 def _shares(obj: bpy.types.Object, mix: Mix) -> np.ndarray:
-    """Return (V,) how much of what comes each vertex takes."""
+    """Return the (V,) share of the new values that each vertex takes."""
     if not mix.mask:
         return np.full(len(obj.data.vertices), mix.factor)
     return mix.factor * read_weights(obj, [mix.mask])[:, 0]

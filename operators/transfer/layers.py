@@ -1,4 +1,4 @@
-"""What an artist puts on a mesh, layer by layer, as arrays: the common form for reading, transferring and writing."""
+"""Layers of a mesh as arrays: weights, maps, keys and the like in one form for reading, mapping and writing."""
 
 from dataclasses import dataclass, replace
 

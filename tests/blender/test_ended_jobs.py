@@ -82,14 +82,13 @@ def test_a_job_ends_with_the_file_it_was_started_in(extension, star_object):
 
 
 def test_a_result_for_a_file_that_is_gone_is_dropped(star_object, extension):
-    from eigenparts.operators.mesh_data import mesh_arrays
+    from eigenparts.operators.jobs.mesh_handle import MeshHandle
     from eigenparts.operators.messages import user_errors
-    from eigenparts.operators.parts.analyze import Ticket, find_mesh
 
-    ticket = Ticket(star_object.data.session_uid, mesh_arrays.fingerprint(star_object.data))
+    handle = MeshHandle.of(star_object)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     with pytest.raises(user_errors.Refusal, match="deleted"):
-        find_mesh(ticket)
+        handle.find_mesh()
 
 
 def test_the_thread_of_a_job_does_not_keep_blender_open(extension):

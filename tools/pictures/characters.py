@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 from compute import TriangleMesh
 from compute.surface.mesh import Floats, Ints
 from eigenparts.operators.blender.known_values import elements_of, mesh_of, present
-from eigenparts.operators.mesh_state import palette, state
+from eigenparts.operators.mesh_state import palette
+from eigenparts.operators.mesh_state.state import read
 from examples import Bone, Character, Pose
 from examples.rig import bone_motions
 from examples.skinning import blend_skinning
@@ -93,7 +94,7 @@ def segment(obj: bpy.types.Object, **choice: float) -> None:
 
 def level_of(obj: bpy.types.Object) -> tuple[int, int, int]:
     """Return the level that an object shows, how many there are, and how many parts it shows."""
-    summary = state.summarize(mesh_of(obj))
+    summary = read(mesh_of(obj)).summary
     return summary.level, summary.n_levels, len(summary.parts)
 
 

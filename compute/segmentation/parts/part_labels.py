@@ -7,13 +7,13 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ...choices import MODES, NESTED
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
 from ..borders.level_set_borders import Polyline
 from ..edits.corrections import LEVEL, Corrections, Labelling, corrected
 from ..faces.branches import Branches, repaired_labels
 from ..faces.part_tree import PartTree
-from ..modes import MODES, NESTED
 
 BODY = 0
 

@@ -1,4 +1,4 @@
-"""What operators have in common that register one object once more.
+"""Base class of the operators that register one object once more.
 
 What was computed before is used as long as Blender runs; functions are not stored in files, so the first time after a
 file was loaded both meshes are analyzed again.
@@ -12,15 +12,18 @@ from bpy.props import StringProperty
 
 from ..jobs import background
 from ..mesh_state import registration_record
+from ..mesh_state.state import read
 from ..messages.user_errors import Refusal, can_use_active_mesh
-from .register_meshes import Registration, Wish
-from .registering import SETTINGS, Registers, Tickets
+from ..parts.analysis_settings import SETTINGS, AnalysisSettings
+from .match_options import MatchOptions
+from .registration_operator import RegistrationHandles, RegistrationOperator
+from .shape_registration import Registration
 
 DAMAGED = "The registration stored on this mesh is damaged; register the selected meshes again."
 
 
-class RegistersAgain(Registers):
-    """Registers one object again as before, but for what ``wish`` says."""
+class RepeatedRegistration(RegistrationOperator):
+    """Registers one object again as before, but for what ``match_options`` says."""
 
     object_name: StringProperty(name="Object", description="Name of the object; the active one if empty")
 
@@ -28,26 +31,23 @@ class RegistersAgain(Registers):
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], Tickets]:
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], RegistrationHandles]:
         obj = context.object if not self.object_name else _mesh_object(context, self.object_name)
-        match = registration_record.read(obj.data)
+        registration = read(obj.data).registration
+        match = None if registration is None else registration.match
         if match is None:
             raise Refusal(registration_record.NOT_REGISTERED)
-        reference = registration_record.reference_object(obj.data) or _mesh_object(context, match.reference)
+        reference = registration.reference or _mesh_object(context, match.reference)
         if reference.name not in context.view_layer.objects:
             raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
         if not _are_settings(match.settings, context.scene.eigenparts.bl_rna.properties):
             raise Refusal(DAMAGED)
-        return self.start(context, reference, [obj], self.wish(match), match.settings)
+        settings = AnalysisSettings(**{name: match.settings[name] for name in SETTINGS})
+        return self.start(context, reference, [obj], self.match_options(match), settings)
 
-    def wish(self, match: registration_record.Match) -> Wish:
-        """Return what is to be different now."""
+    def match_options(self, match: registration_record.Match) -> MatchOptions:
+        """Return the options of the new matching."""
         raise NotImplementedError
-
-
-def given_flips(match: registration_record.Match) -> dict[int, int]:
-    """Return the signs that the user gave before."""
-    return {int(number): sign for number, sign in match.flips.items()}
 
 
 def _are_settings(stored: dict[str, Any], known: bpy.types.bpy_prop_collection) -> bool:

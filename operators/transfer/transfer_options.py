@@ -1,0 +1,79 @@
+"""Options of a transfer, in the panel and in scripts."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty, StringProperty
+
+from .layer_choices import DEFAULT_LAYERS, LAYERS
+
+
+class TransferOptions:
+    """Layers of a transfer and how they are written; the scene keeps them for the panel, scripts give them."""
+
+    layers: EnumProperty(
+        name="Layers",
+        description="What the other meshes are given",
+        options={"ENUM_FLAG"},
+        items=[(kind, name, description) for kind, (name, description) in LAYERS.items()],
+        default=set(DEFAULT_LAYERS),
+    )
+    groups: EnumProperty(
+        name="Groups",
+        description="Which of the vertex groups the other meshes are given",
+        items=[
+            ("ALL", "All", "All vertex groups"),
+            ("DEFORM", "Deform Bones", "Those of bones that deform the mesh"),
+            ("NAMED", "Named", "Those that are named"),
+        ],
+    )
+    group_names: StringProperty(name="Names", description="Names of vertex groups with commas between them")
+    factor: FloatProperty(
+        name="Mix",
+        description="How much of what is there is replaced: 0 for nothing, 1 for all of it",
+        subtype="FACTOR",
+        min=0,
+        max=1,
+        default=1,
+    )
+    mask: StringProperty(
+        name="Mask",
+        description="Name of a vertex group of the other meshes: something is written only where it has weight",
+    )
+    unsure: EnumProperty(
+        name="Unsure",
+        description="What is written to vertices whose place on the active mesh is not sure",
+        items=[
+            ("TAKE", "Take Over", "What is found at the most likely place"),
+            ("FILL", "Fill In", "What fits smoothly to the sure vertices around them"),
+        ],
+        default="FILL",
+    )
+    selects_unsure: BoolProperty(
+        name="Select Unsure", description="Select the vertices whose place is not sure, and no others"
+    )
+    mirrored: BoolProperty(
+        name="Mirrored",
+        description="The other meshes are mirror images, such as a left glove and a right one; left and right are"
+        " swapped in names",
+    )
+    use_modifiers: BoolProperty(
+        name="With Modifiers", description="Match the shapes as modifiers leave them; they must not change the faces"
+    )
+
+
+class EigenpartsTransferSettings(TransferOptions, bpy.types.PropertyGroup):
+    """The options the panel shows."""
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((EigenpartsTransferSettings,))
+
+
+def register() -> None:
+    """Give scenes the options."""
+    _register_classes()
+    bpy.types.Scene.eigenparts_transfer = PointerProperty(type=EigenpartsTransferSettings)
+
+
+def unregister() -> None:
+    """Take them away again."""
+    del bpy.types.Scene.eigenparts_transfer
+    _unregister_classes()
