@@ -7,6 +7,7 @@ import bpy
 
 from .. import compute
 from ..compute.errors import EngineError
+from ..operators.blender.known_values import mesh_of
 from ..operators.messages.sentences import Messages
 from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_settings import AnalysisSettings
@@ -50,7 +51,7 @@ def row_of(
         "name": obj.name,
         "level": labels.level,
         "n_levels": result.stored.part_tree.hierarchy.n_levels,
-        "parts": part_rows(obj.data, labels),
+        "parts": part_rows(mesh_of(obj), labels),
         "seconds": round(result.seconds, 3),
         "warnings": list(messages.warnings),
     }

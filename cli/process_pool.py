@@ -20,7 +20,7 @@ from pathlib import Path
 
 import bpy
 
-from ..operators.messages.user_errors import Refusal
+from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
 from .atomic_write import discard
 from .jobs import Job
 from .report import Report, path_beside
@@ -174,10 +174,11 @@ def cluster_pool(options: argparse.Namespace) -> Iterator[ProcessPool]:
     except ImportError as error:
         raise Refusal('--scheduler needs dask in this Python: pip install "distributed".') from error
     try:
-        client = Client(options.scheduler, timeout=PATIENCE)
+        # Dask has no types here.
+        client = Client(options.scheduler, timeout=PATIENCE)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise Refusal(f"no dask scheduler answers at {options.scheduler}.") from error
-    with client, client.get_executor() as executor:
+    with client, client.get_executor() as executor:  # type: ignore[no-untyped-call]
         command = options.worker_command or own_command()
         yield ProcessPool(
             executor=executor,
@@ -202,7 +203,10 @@ def own_command() -> list[str]:
     """Return what starts this command line on this machine: the application, or Python with Blender as a module."""
     if bpy.app.binary_path:
         return [bpy.app.binary_path, "--background", "--command", "eigenparts"]
-    folder_of_scipy = Path(find_spec("scipy").origin).parents[1]
+    scipy = find_spec("scipy")
+    if scipy is None or scipy.origin is None:
+        raise Refusal(MISSING_SCIPY)
+    folder_of_scipy = Path(scipy.origin).parents[1]
     return [sys.executable, "-P", str(Path(__file__).with_name("launch.py")), str(folder_of_scipy)]
 
 

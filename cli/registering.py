@@ -11,6 +11,7 @@ import bpy
 
 from ..compute.errors import EngineError
 from ..compute.progress import silent
+from ..operators.blender.known_values import mesh_of
 from ..operators.messages.user_errors import Refusal
 from ..operators.registration import mesh_registration, shape_registration
 from ..operators.registration.match_options import MatchOptions
@@ -78,7 +79,7 @@ class Register:
         given = mesh_registration.read_target(bpy.context, obj, shared.settings)
         first_free = max(self._first_free, prepared.highest_label + 1)
         shape = shape_registration.register_one(prepared, given, shared.options, first_free, silent)
-        messages = mesh_registration.write_target(obj.data, shape, shared, reference)
+        messages = mesh_registration.write_target(mesh_of(obj), shape, shared, reference)
         self._first_free = max(first_free, shape.highest_label + 1)
         row = row_of(obj, shape.labels, shape.result, messages)
         for part in row["parts"]:

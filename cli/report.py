@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from ..compute.errors import EngineError
+from ..compute.registration.parts.transferred_labels import FaceLabels
 from ..compute.segmentation.parts.part_labels import BranchLabels
 from ..operators.messages.user_errors import Refusal
 from .atomic_write import staged
@@ -18,7 +19,7 @@ VERSION = 1
 Report = dict[str, Any]
 
 
-def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels) -> list[Report]:
+def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels | FaceLabels) -> list[Report]:
     """Return the table of parts of a divided mesh."""
     parts, given = labels.parts, names_of_parts(mesh)
     columns = (parts.id.tolist(), parts.parent.tolist(), parts.area.tolist(), parts.n_triangles.tolist())

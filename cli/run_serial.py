@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -27,7 +28,7 @@ class Command(Protocol):
 def run_in_this_process(jobs: Iterable[Job], command: Command) -> Iterator[Report]:
     """Yield a report for each file when it is done."""
     for job in jobs:
-        yield _report(job, lambda job=job: _do(job, command))
+        yield _report(job, partial(_do, job, command))
 
 
 def failed_report(job: Job, problem: str) -> Report:
@@ -53,7 +54,7 @@ def _report(job: Job, work: Callable[[], Report]) -> Report:
 def _do(job: Job, command: Command) -> Report:
     if not job.path.is_file():
         raise Refusal("there is no such file.")
-    report = {"digest": digest_of(job.path), "settings": command.settings}
+    report: Report = {"digest": digest_of(job.path), "settings": command.settings}
     report["objects"] = command.open_and_process(job.path)
     if problems := problems_of(report["objects"]):
         report["error"] = problems

@@ -2,11 +2,13 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import bpy
 
 from ..compute.progress import silent
+from ..operators.blender.known_values import mesh_of
+from ..operators.outputs.level_choice import LevelChoice
 from ..operators.parts import mesh_segmentation
 from . import formats
 from .objects import analysis_settings, chosen_objects, report_each, row_of
@@ -33,11 +35,13 @@ class Segment:
     def _divide(self, obj: bpy.types.Object) -> Report:
         given = mesh_segmentation.read(bpy.context, obj, analysis_settings(self._options))
         result = mesh_segmentation.analyze(given, silent)
-        segmented = mesh_segmentation.write(obj.data, result, mode=self._options.mode, choice=choice_of(self._options))
+        segmented = mesh_segmentation.write(
+            mesh_of(obj), result, mode=self._options.mode, choice=choice_of(self._options)
+        )
         return row_of(obj, segmented.labels, result, segmented.messages)
 
 
-def choice_of(options: argparse.Namespace) -> dict[str, Any]:
+def choice_of(options: argparse.Namespace) -> LevelChoice:
     """Return the level, threshold or number of parts that was given, if any."""
-    choice = {name: getattr(options, name) for name in ("level", "threshold", "n_parts")}
-    return {name: value for name, value in choice.items() if value is not None}
+    choice = {name: getattr(options, name) for name in LevelChoice.__annotations__}
+    return cast(LevelChoice, {name: value for name, value in choice.items() if value is not None})

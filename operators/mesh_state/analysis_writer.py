@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import face_areas, fingerprint, remove_own_attributes
@@ -92,7 +93,7 @@ def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
 
 def _kept_corrections(
     earlier: MeshState, part_tree: compute.PartTree, has_same_parts: bool
-) -> tuple[tuple[compute.Correction, ...], np.ndarray | None, tuple[str, ...]]:
+) -> tuple[tuple[compute.Correction, ...], NDArray[np.int64] | None, tuple[str, ...]]:
     """Return the earlier corrections with the numbers that their parts have now, faces painted anew, and warnings."""
     items = earlier.corrections
     if not items or has_same_parts:

@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import own_names, read_own_integers, remove_own_attributes, write_attribute
@@ -24,7 +25,7 @@ COLUMNS = ("kind", "part", "other", "value", "level", "mode")
 
 def unpacked_items(stored: Any) -> tuple[compute.Correction, ...]:
     """Return the corrections in a state, as far as they make sense; cheap enough for every redraw."""
-    group = stored.get(CORRECTIONS) if hasattr(stored, "to_dict") else None
+    group: Any = stored.get(CORRECTIONS) if hasattr(stored, "to_dict") else None
     if not hasattr(group, "to_dict"):
         return ()
     rows = [group[name] for name in sorted(filter(str.isdecimal, group.keys()), key=int)]
@@ -39,14 +40,14 @@ def packed_items(items: tuple[compute.Correction, ...]) -> dict[str, Any]:
     return {CORRECTIONS: rows}
 
 
-def read_painted(mesh: bpy.types.Mesh) -> np.ndarray:
+def read_painted(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
     """Return the (F,) int64 part each face was painted with, -1 elsewhere."""
     if PAINTED.name not in own_names(mesh) or PAINTED.name not in mesh.attributes:
         return np.full(len(mesh.polygons), -1)
     return read_own_integers(mesh, PAINTED).astype(np.int64) - 1
 
 
-def write_painted(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
+def write_painted(mesh: bpy.types.Mesh, painted: NDArray[np.int64]) -> None:
     """Write the part of each painted face; nothing is left where none is."""
     if (painted >= 0).any():
         write_attribute(mesh, PAINTED, (painted + 1).astype(np.int32))

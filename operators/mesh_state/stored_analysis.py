@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import read_edges, read_own_floats, read_own_integers, write_attribute
@@ -59,7 +60,7 @@ class BorderSource:
     """
 
     profile: compute.EdgeProfile
-    vertex_heights: np.ndarray
+    vertex_heights: NDArray[np.float64]
 
 
 def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
@@ -95,9 +96,9 @@ def write_source(mesh: bpy.types.Mesh, source: BorderSource) -> None:
     """Write the attributes that borders are cut from."""
     for attribute, arc in zip(ARCS, source.profile.arcs, strict=False):
         write_attribute(mesh, attribute, arc)
-    write_attribute(mesh, HEIGHT, np.float32(source.vertex_heights))
+    write_attribute(mesh, HEIGHT, source.vertex_heights.astype(np.float32))
     inside = np.nan_to_num(source.profile.heights[:, 1:-1])
-    write_attribute(mesh, EDGE_HEIGHTS, np.float32(np.pad(inside, ((0, 0), (0, 2 - inside.shape[1])))))
+    write_attribute(mesh, EDGE_HEIGHTS, np.pad(inside, ((0, 0), (0, 2 - inside.shape[1]))).astype(np.float32))
 
 
 def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAnalysis:
@@ -111,7 +112,7 @@ def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAn
     return StoredAnalysis(part_tree, shells)
 
 
-def unpacked_branches(group: Any, of_faces: list[np.ndarray]) -> tuple[compute.Branches, ...]:
+def unpacked_branches(group: Any, of_faces: list[NDArray[np.int32]]) -> tuple[compute.Branches, ...]:
     """Return the branches in a group, with those of the faces for each tree."""
     return tuple(
         compute.Branches(of_face=of_face, **unpacked(group[PIECES_OF_TREE.format(i)], compute.Branches))
@@ -149,7 +150,7 @@ def has_trees(group: Any, hierarchy: compute.Hierarchy) -> bool:
         return False
 
 
-def vertex_heights(mesh: bpy.types.Mesh) -> np.ndarray:
+def vertex_heights(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
     """Return the (V,) values of the field on the vertices."""
     return read_own_floats(mesh, HEIGHT).astype(np.float64)
 
@@ -166,7 +167,7 @@ def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
     )
 
 
-def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> np.ndarray:
+def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> NDArray[np.float64]:
     """Return the (A,) values of the field at which arcs close; only a root and whole shells close nowhere."""
     heights = unpacked_array(group[CLOSING_HEIGHTS.format(number)], "float64")
     if heights.shape != tree.saddle.shape or not np.isfinite(heights[tree.saddle >= 0]).all():

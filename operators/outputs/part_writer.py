@@ -5,10 +5,14 @@ Each call reads once what the mesh remembers, computes, and then writes all or n
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import present
 from ..mesh_data.mesh_arrays import read_own_integers, refuse_foreign
 from ..mesh_state import corrected_analysis, registration_record, schema
 from ..mesh_state.corrections import packed_items, write_painted, write_redrawn
@@ -19,11 +23,14 @@ from ..messages.user_errors import Refusal
 from . import output_registry
 from .division import PART, division_of
 from .division_writer import write_parts
+from .level_choice import LevelChoice
 from .ownership import claim, mend
 from .rollback import all_or_nothing
 
 
-def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: float) -> compute.BranchLabels:
+def segment_mesh(
+    mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: Unpack[LevelChoice]
+) -> compute.BranchLabels:
     """Divide an analyzed mesh into parts and write them.
 
     Parameters
@@ -53,7 +60,7 @@ def show_mode(mesh: bpy.types.Mesh, mode: str) -> compute.BranchLabels:
     return segment(state, mode=mode, level=state.shown_level)
 
 
-def segment(state: MeshState, *, mode: str | None = None, **choice: float) -> compute.BranchLabels:
+def segment(state: MeshState, *, mode: str | None = None, **choice: Unpack[LevelChoice]) -> compute.BranchLabels:
     """Divide an analyzed mesh into parts and write them; see ``segment_mesh``."""
     refuse_foreign_results(state)
     analysis = corrected_analysis.corrected(state)
@@ -61,7 +68,7 @@ def segment(state: MeshState, *, mode: str | None = None, **choice: float) -> co
     labels = compute.label_branches(analysis.part_tree, mode=mode, corrections=analysis.corrections, **choice)
     is_redrawn = compute.needs_faces(state.corrections) and state.redrawn is None
     with all_or_nothing(state.mesh):
-        redrawn = write_redrawn(state.mesh, analysis.part_tree, analysis.corrections) if is_redrawn else {}
+        redrawn = write_redrawn(state.mesh, analysis.part_tree, present(analysis.corrections)) if is_redrawn else {}
         changes = {schema.MODE: mode, schema.REGISTRATION: None, **redrawn}
         write_parts(state, labels, analysis.part_tree, state.own_parts, changes)
     return labels
@@ -72,7 +79,7 @@ def correct(
     items: tuple[compute.Correction, ...],
     *,
     changed: int | None = None,
-    painted: np.ndarray | None = None,
+    painted: NDArray[np.int64] | None = None,
 ) -> None:
     """Give an analyzed mesh other corrections, and show its parts at the level that it shows.
 
@@ -100,7 +107,7 @@ def correct(
         raise Refusal(corrected_analysis.NO_EFFECT)
     with all_or_nothing(state.mesh):
         write_painted(state.mesh, painted)
-        redrawn = write_redrawn(state.mesh, analysis.part_tree, analysis.corrections)
+        redrawn = write_redrawn(state.mesh, analysis.part_tree, present(analysis.corrections))
         changes = {schema.MODE: mode, **packed_items(items), **redrawn}
         write_parts(state, labels, analysis.part_tree, state.parts, changes, items)
 
@@ -176,7 +183,7 @@ def refuse_foreign_results(state: MeshState) -> None:
     claim(state.mesh, output_registry.result_attributes(state.outputs))
 
 
-def read_labels(mesh: bpy.types.Mesh) -> np.ndarray:
+def read_labels(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the (F,) int32 part of each face; raises a Refusal if they are gone or cannot be parts."""
     labels = read_own_integers(mesh, PART)
     if not lie_within(labels, 0, schema.MOST_LABELS):

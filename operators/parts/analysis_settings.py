@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from ... import compute
+from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
 from .choice_items import ATTRIBUTE, EIGENFUNCTION, identifier, word
 
@@ -62,7 +63,7 @@ class AnalysisInput:
 
 def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:
     """Return the mesh of an object, posed if that is wanted, and the keyword arguments of the engine."""
-    options = engine_options(obj.data, settings)
+    options = engine_options(mesh_of(obj), settings)
     return AnalysisInput(obj.name, mesh_arrays.read_object(context, obj, settings.use_modifiers), options)
 
 

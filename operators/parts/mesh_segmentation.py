@@ -7,19 +7,22 @@ the result on the mesh and returns what is to be told.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of
 from ..jobs import recent_analyses
 from ..mesh_state import analysis_writer, function_hints, state
 from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import Messages
 from ..outputs import part_writer
+from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from .analysis_settings import AnalysisInput, AnalysisSettings, read_input
 
@@ -48,7 +51,7 @@ class AnalysisResult:
     description: str
     warnings: tuple[str, ...]
     seconds: float
-    polygon_of_triangle: np.ndarray
+    polygon_of_triangle: NDArray[np.int64]
     hints: tuple[compute.FunctionHint, ...] = ()
 
 
@@ -68,7 +71,7 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
     Refusal
         If something of the user's stands where results belong, or the settings do not fit the mesh.
     """
-    part_writer.refuse_foreign_results(state.read(obj.data))
+    part_writer.refuse_foreign_results(state.read(mesh_of(obj)))
     return read_input(context, obj, settings)
 
 
@@ -88,7 +91,7 @@ def write(
     result: AnalysisResult,
     *,
     mode: str | None = None,
-    choice: Mapping[str, float] | None = None,
+    choice: LevelChoice | None = None,
 ) -> Segmented:
     """Put an analysis on its mesh and divide it into parts; all of it is written or nothing.
 
@@ -96,7 +99,7 @@ def write(
     ----------
     mode : str, optional
         How levels are read; as the mesh was divided before if None.
-    choice : mapping, optional
+    choice : LevelChoice, optional
         One of ``level``, ``threshold`` and ``n_parts``; the default level if there is none.
     """
     with all_or_nothing(mesh):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_state.stored_analysis import StoredAnalysis
 from ..messages.user_errors import Refusal, in_name_of
+from ..outputs.level_choice import LevelChoice
 from ..parts.analysis_settings import AnalysisInput
 from ..parts.mesh_segmentation import AnalysisResult, result_of
 from .match_options import MatchOptions
@@ -41,7 +42,7 @@ class ShownParts:
     ----------
     mode : str
         How levels are read.
-    choice : mapping
+    choice : LevelChoice
         One of ``level``, ``threshold`` and ``n_parts``; the level that the mesh shows if empty.
     level : int or None
         The level that it shows, None if it shows none.
@@ -50,7 +51,7 @@ class ShownParts:
     """
 
     mode: str
-    choice: Mapping[str, float]
+    choice: LevelChoice
     level: int | None = None
     analysis: StoredAnalysis | None = None
 
@@ -208,7 +209,9 @@ def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> P
     part_tree, choice, corrections = source.shape.part_tree, shown.choice, None
     if shown.analysis is not None and _has_trees(shown.analysis.part_tree.hierarchy, part_tree.hierarchy):
         part_tree = replace(part_tree, branches=shown.analysis.part_tree.branches)
-        choice, corrections = choice or {"level": shown.level}, shown.analysis.corrections
+        corrections = shown.analysis.corrections
+        if not choice and shown.level is not None:
+            choice = {"level": shown.level}
     elif shown.analysis is not None and shown.analysis.corrections is not None and shown.analysis.corrections.items:
         raise Refusal(CORRECTED_BEFORE.format(name))
     labels = compute.label_branches(part_tree, mode=shown.mode, corrections=corrections, **choice)

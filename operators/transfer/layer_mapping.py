@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..jobs import recent_analyses
@@ -51,9 +53,9 @@ class TransferShape:
 
     name: str
     arrays: MeshArrays
-    corners: np.ndarray
-    corner_vertex: np.ndarray
-    corner_polygon: np.ndarray
+    corners: NDArray[np.int64]
+    corner_vertex: NDArray[np.int64]
+    corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
 
     @property
@@ -90,7 +92,7 @@ class MappedLayers:
     """
 
     layers: list[Layer]
-    is_sure: np.ndarray
+    is_sure: NDArray[np.bool_]
     found_by: str
     confidence: float
     torn_seams: tuple[str, ...]
@@ -245,7 +247,7 @@ class _LayerMapper:
             return layer.with_values(self._corners(layer))
         return layer.with_values(self._faces(layer.values))
 
-    def _faces(self, values: np.ndarray) -> np.ndarray:
+    def _faces(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return for each face what most of its area has on the source."""
         kinds, kind = np.unique(values, axis=0, return_inverse=True)
         labels = self._correspondence.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])
@@ -253,7 +255,7 @@ class _LayerMapper:
         polygon = self._target.arrays.polygon_of_triangle
         return kinds[compute.majority_of_polygons(labels, self.target_mesh.areas, polygon, n_polygons)]
 
-    def _corners(self, layer: Layer) -> np.ndarray:
+    def _corners(self, layer: Layer) -> NDArray[np.float64]:
         triangle_of_polygon = np.zeros(int(self._target.corner_polygon.max(initial=-1)) + 1, dtype=np.int64)
         polygon = self._target.arrays.polygon_of_triangle
         triangle_of_polygon[polygon[::-1]] = np.arange(len(polygon))[::-1]
