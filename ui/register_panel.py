@@ -24,8 +24,8 @@ class EIGENPARTS_PT_register(EigenpartsPanel, bpy.types.Panel):
             present(row.operator("eigenparts.register_selected", icon="LINKED")).mirrored = False
             present(row.operator("eigenparts.register_selected", text="", icon="MOD_MIRROR")).mirrored = True
         for obj, state in registered_objects(context):
-            header, body = layout.panel(f"eigenparts_match_{obj.session_uid}", default_closed=True)
             match = present(state.match)
+            header, body = layout.panel(f"eigenparts_match_{obj.session_uid}", default_closed=True)
             _draw_confidence(header, obj.name, match)
             if body is not None:
                 _draw_match(body, obj.name, match)

@@ -49,14 +49,13 @@ class CorrectionRow(Protocol):
 
 
 class MeshSettings(Protocol):
-    """The parts that a mesh shows, its corrections, and its outputs."""
+    """The parts that a mesh shows and its corrections; the outputs are those of the registry."""
 
     rows: Rows[PartRow]
     active_part: int
     active_row: int
     correction_rows: Rows[CorrectionRow]
     active_correction: int
-    vertex_groups: bool
 
 
 class JobStatus(Protocol):

@@ -15,7 +15,7 @@ from ..mesh_state.analyzed_faces import AnalyzedFaces
 from ..mesh_state.state import MeshState, is_analyzed_for, read
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
-from ..outputs import part_writer
+from ..outputs import output_registry, part_writer
 from ..outputs.rollback import all_or_nothing, faces_or_nothing
 from . import paint
 
@@ -72,7 +72,7 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     """
     mesh = mesh_of(obj)
     _refuse_shared(obj)
-    part_writer.refuse_foreign_results(state)
+    output_registry.refuse_foreign_results(state)
     level, mode, shells = state.level, state.mode, state.shells
     profile, crossings = corrected_analysis.crossings(state, state.border_source)
     arcs = state.analysis.part_tree.arcs_of_faces
@@ -86,7 +86,7 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
 
 def move_borders(state: MeshState) -> None:
     """Move the borders of the parts that a mesh shows to short lines of its edges."""
-    part_writer.refuse_foreign_results(state)
+    output_registry.refuse_foreign_results(state)
     analysis, level, mode = state.analysis, state.level, state.mode
     labels = part_writer.read_labels(state.mesh)
     moved = compute.shortened_borders(labels, state.faces.graph)

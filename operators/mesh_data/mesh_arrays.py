@@ -4,6 +4,7 @@ Attributes we write are marked in a property of the mesh, so that nothing of the
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
 from typing import TypeVar
@@ -168,6 +169,14 @@ def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: Values) -> 
         mesh.attributes.new(own.name, type=own.data_type, domain=own.domain)
         mark_own(mesh, [own.name])
     elements_of(mesh.attributes[own.name]).foreach_set(own.property_name, np.ascontiguousarray(values).ravel())
+
+
+def write_attributes(mesh: bpy.types.Mesh, values: Mapping[OwnAttribute, Values | None]) -> None:
+    """Store values in attributes of ours, as ``write_attribute`` does, and remove those that have None."""
+    remove_own_attributes(mesh, [own.name for own, column in values.items() if column is None])
+    for own, column in values.items():
+        if column is not None:
+            write_attribute(mesh, own, column)
 
 
 def read_own_integers(mesh: bpy.types.Mesh, own: OwnAttribute) -> NDArray[np.int32]:

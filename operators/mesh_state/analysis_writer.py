@@ -5,22 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.mesh_arrays import face_areas, fingerprint, remove_own_attributes
+from ..mesh_data.attribute_values import Values
+from ..mesh_data.mesh_arrays import OwnAttribute, face_areas, fingerprint, write_attributes
 from ..messages.user_errors import Refusal
 from . import corrections, function_hints
 from .schema import (
     ARCS,
-    BRANCHES,
     CHOICES,
     DESCRIPTION,
     EDGE_HEIGHTS,
     FINGERPRINT,
     LOST,
     OF_PARTS,
+    PIECE,
+    REDRAWN,
     SCHEMA,
     SHELLS,
     VERSION,
@@ -29,12 +29,12 @@ from .state import MeshState, read, remember, replace
 from .stored_analysis import (
     BorderSource,
     StoredAnalysis,
+    branch_attributes,
     has_trees,
     packed_branches,
     packed_source,
     packed_tree,
-    write_branches,
-    write_source,
+    source_attributes,
 )
 
 
@@ -53,7 +53,6 @@ def store(
     items, painted, warnings = _kept_corrections(earlier, part_tree, has_same_parts)
     values = {
         VERSION: SCHEMA,
-        FINGERPRINT: fingerprint(mesh),
         DESCRIPTION: description,
         SHELLS: analysis.shells,
         **kept,
@@ -62,23 +61,18 @@ def store(
         **packed_source(source),
         **function_hints.packed_hints(hints),
     }
-    if painted is not None:
-        corrections.write_painted(mesh, painted)
-    corrections.drop_redrawn(mesh)
-    n_trees = len(part_tree.trees)
-    remove_own_attributes(mesh, [attribute.name for attribute in BRANCHES[n_trees:] + ARCS[n_trees:]])
-    write_branches(mesh, part_tree.branches)
-    write_source(mesh, source)
-    replace(mesh, values)
+    write_attributes(
+        mesh, {**branch_attributes(part_tree.branches), **source_attributes(source), **painted, PIECE: None}
+    )
+    replace(mesh, {**values, FINGERPRINT: fingerprint(mesh)})
     return warnings
 
 
 def store_branches(mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...]) -> None:
     """Put new faces of the arcs on a mesh whose faces were cut; its borders can be cut no more."""
-    write_branches(mesh, branches)
-    dropped = corrections.drop_redrawn(mesh)
-    remove_own_attributes(mesh, [attribute.name for attribute in (*ARCS, EDGE_HEIGHTS)])
-    remember(mesh, {**packed_branches(branches), FINGERPRINT: fingerprint(mesh), **dropped})
+    gone = dict.fromkeys((*ARCS, EDGE_HEIGHTS, PIECE))
+    write_attributes(mesh, {**branch_attributes(branches), **gone})
+    remember(mesh, {**packed_branches(branches), FINGERPRINT: fingerprint(mesh), REDRAWN: None})
 
 
 def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
@@ -93,16 +87,16 @@ def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
 
 def _kept_corrections(
     earlier: MeshState, part_tree: compute.PartTree, has_same_parts: bool
-) -> tuple[tuple[compute.Correction, ...], NDArray[np.int64] | None, tuple[str, ...]]:
+) -> tuple[tuple[compute.Correction, ...], dict[OwnAttribute, Values | None], tuple[str, ...]]:
     """Return the earlier corrections with the numbers that their parts have now, faces painted anew, and warnings."""
     items = earlier.corrections
     if not items or has_same_parts:
-        return items, None, ()
+        return items, {}, ()
     try:
         before = earlier.analysis_of_any_shape.part_tree
     except Refusal:
-        return (), None, (LOST,)
+        return (), {}, (LOST,)
     partners = compute.carried(items, before, part_tree, face_areas(earlier.mesh))
     painted = compute.carried_painting(earlier.painted, items, partners)
     kept = compute.renumbered(items, partners, before.hierarchy, part_tree.hierarchy)
-    return kept, painted, (LOST,) if len(kept) < len(items) else ()
+    return kept, corrections.painted_attribute(painted), (LOST,) if len(kept) < len(items) else ()

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.mesh_arrays import own_names, read_own_integers, remove_own_attributes, write_attribute
+from ..mesh_data.attribute_values import Values
+from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers
 from .schema import CORRECTIONS, PAINTED, PIECE, REDRAWN, TREE
 from .serialization import UNREADABLE, packed_array, unpacked_array
 from .stored_analysis import packed_branches, unpacked_branches
@@ -47,29 +48,24 @@ def read_painted(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
     return read_own_integers(mesh, PAINTED).astype(np.int64) - 1
 
 
-def write_painted(mesh: bpy.types.Mesh, painted: NDArray[np.int64]) -> None:
-    """Write the part of each painted face; nothing is left where none is."""
-    if (painted >= 0).any():
-        write_attribute(mesh, PAINTED, (painted + 1).astype(np.int32))
-    else:
-        remove_own_attributes(mesh, [PAINTED.name])
+def painted_attribute(painted: NDArray[np.int64]) -> dict[OwnAttribute, Values | None]:
+    """Return the part of each painted face as an attribute; None where no face is painted."""
+    return {PAINTED: (painted + 1).astype(np.int32) if (painted >= 0).any() else None}
 
 
-def write_redrawn(
-    mesh: bpy.types.Mesh, part_tree: compute.PartTree, corrections: compute.Corrections
-) -> dict[str, Any]:
-    """Write the branch of each face as corrections divide them, and return what goes into the state beside it."""
+def redrawn_attribute(
+    part_tree: compute.PartTree, corrections: compute.Corrections
+) -> dict[OwnAttribute, Values | None]:
+    """Return the branch of each face as corrections divide them; None where they divide no face."""
+    return {PIECE: part_tree.branches[0].of_face if compute.needs_faces(corrections.items) else None}
+
+
+def packed_redrawn(part_tree: compute.PartTree, corrections: compute.Corrections) -> dict[str, Any]:
+    """Return what goes into the state beside ``redrawn_attribute``; None where no face is divided."""
     if not compute.needs_faces(corrections.items):
-        return drop_redrawn(mesh)
-    write_attribute(mesh, PIECE, part_tree.branches[0].of_face)
+        return {REDRAWN: None}
     sides = {"side": packed_array(corrections.side), "painted": packed_array(corrections.painted)}
     return {REDRAWN: {**packed_branches(part_tree.branches), **sides}}
-
-
-def drop_redrawn(mesh: bpy.types.Mesh) -> dict[str, Any]:
-    """Take redrawn branches away: there is no need for them, or they are not true any more."""
-    remove_own_attributes(mesh, [PIECE.name])
-    return {REDRAWN: None}
 
 
 def read_redrawn(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import Any
 
 import bpy
@@ -10,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.mesh_arrays import read_edges, read_own_floats, read_own_integers, write_attribute
+from ..mesh_data.attribute_values import Values
+from ..mesh_data.mesh_arrays import OwnAttribute, read_edges, read_own_floats, read_own_integers
 from ..messages.user_errors import Refusal
 from .schema import (
     ARCS,
@@ -86,19 +88,20 @@ def packed_source(source: BorderSource) -> dict[str, Any]:
     return {INSIDE_EDGES: source.profile.heights[:, 1:-1].shape[1]}
 
 
-def write_branches(mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...]) -> None:
-    """Write the branch of each face, for each tree."""
-    for attribute, pieces in zip(BRANCHES, branches, strict=False):
-        write_attribute(mesh, attribute, pieces.of_face)
+def branch_attributes(branches: tuple[compute.Branches, ...]) -> dict[OwnAttribute, Values | None]:
+    """Return the branch of each face, for each tree that there can be; None for one that is not there."""
+    of_faces = [pieces.of_face for pieces in branches]
+    return dict(zip_longest(BRANCHES, of_faces))
 
 
-def write_source(mesh: bpy.types.Mesh, source: BorderSource) -> None:
-    """Write the attributes that borders are cut from."""
-    for attribute, arc in zip(ARCS, source.profile.arcs, strict=False):
-        write_attribute(mesh, attribute, arc)
-    write_attribute(mesh, HEIGHT, source.vertex_heights.astype(np.float32))
+def source_attributes(source: BorderSource) -> dict[OwnAttribute, Values | None]:
+    """Return the attributes that borders are cut from; None for those of a tree that is not there."""
     inside = np.nan_to_num(source.profile.heights[:, 1:-1])
-    write_attribute(mesh, EDGE_HEIGHTS, np.pad(inside, ((0, 0), (0, 2 - inside.shape[1]))).astype(np.float32))
+    return {
+        **dict(zip_longest(ARCS, source.profile.arcs)),
+        HEIGHT: source.vertex_heights.astype(np.float32),
+        EDGE_HEIGHTS: np.pad(inside, ((0, 0), (0, 2 - inside.shape[1]))).astype(np.float32),
+    }
 
 
 def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAnalysis:

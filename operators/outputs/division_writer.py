@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from ... import compute
-from ..mesh_data.mesh_arrays import write_attribute
+from ..mesh_data.attribute_values import Values
+from ..mesh_data.mesh_arrays import OwnAttribute, write_attributes
 from ..mesh_state import schema
 from ..mesh_state.part_table import PartTable, number_parts, packed_table
 from ..mesh_state.serialization import packed
@@ -21,6 +22,8 @@ def write_parts(
     part_tree: compute.PartTree,
     parts: PartTable,
     changes: dict[str, Any],
+    *,
+    attributes: dict[OwnAttribute, Values | None] | None = None,
     items: tuple[compute.Correction, ...] | None = None,
 ) -> None:
     """Write parts to an analyzed mesh, and everything that follows them.
@@ -31,6 +34,8 @@ def write_parts(
         In which new parts get their places.
     changes : dict
         What the mesh is to remember beside them.
+    attributes : dict, optional
+        What is written to attributes of ours beside the face map.
     items : tuple of Correction, optional
         Those that the parts come from; those of the state if None.
     """
@@ -40,7 +45,7 @@ def write_parts(
     division = division_of(of_faces, numbered, state.softness)
     shown = {schema.LEVEL: labels.level, schema.PARTS: packed(labels.parts)}
     items = state.corrections if items is None else items
-    write_attribute(mesh, PART, of_faces)
+    write_attributes(mesh, {PART: of_faces, **(attributes or {})})
     remember(mesh, {**shown, **tables, **changes})
     list_parts(mesh, labels.parts)
     list_corrections(mesh, items, labels.resting, numbered)

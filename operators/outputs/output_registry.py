@@ -5,9 +5,11 @@ import bpy
 from ..mesh_data.mesh_arrays import OwnAttribute
 from ..mesh_state.schema import ATTRIBUTES, SOFTNESS
 from ..mesh_state.schema import OUTPUTS as CHOSEN
+from ..mesh_state.state import MeshState
 from . import corner_colours, face_sets, field_values, material_slots, vertex_groups, vertex_map
 from .division import PART, Division
 from .output import Output
+from .ownership import claim
 
 # In the order of the panel.
 OUTPUTS: dict[str, Output] = {
@@ -65,3 +67,9 @@ def attributes_of(outputs: tuple[Output, ...]) -> tuple[OwnAttribute, ...]:
 def result_attributes(names: tuple[str, ...] | None) -> tuple[OwnAttribute, ...]:
     """Return all attributes of an analyzed mesh that has the outputs of some names."""
     return (PART, *ATTRIBUTES, *attributes_of(chosen(names)))
+
+
+def refuse_foreign_results(state: MeshState) -> None:
+    """Raise a Refusal if something of the user's stands where a result belongs."""
+    attributes = result_attributes(state.outputs)
+    claim(state.mesh, attributes)

@@ -15,7 +15,7 @@ from ... import compute
 from ..blender.known_values import present
 from ..mesh_data.mesh_arrays import read_own_integers, refuse_foreign
 from ..mesh_state import corrected_analysis, registration_record, schema
-from ..mesh_state.corrections import packed_items, write_painted, write_redrawn
+from ..mesh_state.corrections import packed_items, packed_redrawn, painted_attribute, redrawn_attribute
 from ..mesh_state.part_table import PartTable, packed_table
 from ..mesh_state.state import MeshState, read, remember
 from ..mesh_state.validation import lie_within
@@ -24,7 +24,7 @@ from . import output_registry
 from .division import PART, division_of
 from .division_writer import write_parts
 from .level_choice import LevelChoice
-from .ownership import claim, mend
+from .ownership import mend
 from .rollback import all_or_nothing
 
 
@@ -62,15 +62,17 @@ def show_mode(mesh: bpy.types.Mesh, mode: str) -> compute.BranchLabels:
 
 def segment(state: MeshState, *, mode: str | None = None, **choice: Unpack[LevelChoice]) -> compute.BranchLabels:
     """Divide an analyzed mesh into parts and write them; see ``segment_mesh``."""
-    refuse_foreign_results(state)
+    output_registry.refuse_foreign_results(state)
     analysis = corrected_analysis.corrected(state)
     mode = mode or state.mode
     labels = compute.label_branches(analysis.part_tree, mode=mode, corrections=analysis.corrections, **choice)
-    is_redrawn = compute.needs_faces(state.corrections) and state.redrawn is None
+    attributes, changes = {}, {schema.MODE: mode, schema.REGISTRATION: None}
+    if compute.needs_faces(state.corrections) and state.redrawn is None:
+        redrawn = analysis.part_tree, present(analysis.corrections)
+        attributes = redrawn_attribute(*redrawn)
+        changes |= packed_redrawn(*redrawn)
     with all_or_nothing(state.mesh):
-        redrawn = write_redrawn(state.mesh, analysis.part_tree, present(analysis.corrections)) if is_redrawn else {}
-        changes = {schema.MODE: mode, schema.REGISTRATION: None, **redrawn}
-        write_parts(state, labels, analysis.part_tree, state.own_parts, changes)
+        write_parts(state, labels, analysis.part_tree, state.own_parts, changes, attributes=attributes)
     return labels
 
 
@@ -97,7 +99,7 @@ def correct(
     Refusal, EngineError
         If the mesh cannot be corrected, or the change has no effect; nothing is changed then.
     """
-    refuse_foreign_results(state)
+    output_registry.refuse_foreign_results(state)
     corrected_analysis.refuse_uncorrectable(state)
     level, mode = state.level, state.mode
     painted = state.painted if painted is None else painted
@@ -105,11 +107,11 @@ def correct(
     labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=analysis.corrections)
     if changed is not None and changed in labels.resting:
         raise Refusal(corrected_analysis.NO_EFFECT)
+    redrawn = analysis.part_tree, present(analysis.corrections)
+    attributes = {**painted_attribute(painted), **redrawn_attribute(*redrawn)}
+    changes = {schema.MODE: mode, **packed_items(items), **packed_redrawn(*redrawn)}
     with all_or_nothing(state.mesh):
-        write_painted(state.mesh, painted)
-        redrawn = write_redrawn(state.mesh, analysis.part_tree, present(analysis.corrections))
-        changes = {schema.MODE: mode, **packed_items(items), **redrawn}
-        write_parts(state, labels, analysis.part_tree, state.parts, changes, items)
+        write_parts(state, labels, analysis.part_tree, state.parts, changes, attributes=attributes, items=items)
 
 
 def show_registered(
@@ -176,11 +178,6 @@ def recolour(mesh: bpy.types.Mesh) -> None:
     division = division_of(read_labels(mesh), state.parts, state.softness)
     output_registry.write_coloured(mesh, division, state.outputs)
     mesh.update()
-
-
-def refuse_foreign_results(state: MeshState) -> None:
-    """Raise a Refusal if something of the user's stands where a result belongs."""
-    claim(state.mesh, output_registry.result_attributes(state.outputs))
 
 
 def read_labels(mesh: bpy.types.Mesh) -> NDArray[np.int32]:

@@ -21,7 +21,7 @@ from ..jobs import recent_analyses
 from ..mesh_state import analysis_writer, function_hints, state
 from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import Messages
-from ..outputs import part_writer
+from ..outputs import output_registry, part_writer
 from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from .analysis_settings import AnalysisInput, AnalysisSettings, read_input
@@ -71,7 +71,7 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
     Refusal
         If something of the user's stands where results belong, or the settings do not fit the mesh.
     """
-    part_writer.refuse_foreign_results(state.read(mesh_of(obj)))
+    output_registry.refuse_foreign_results(state.read(mesh_of(obj)))
     return read_input(context, obj, settings)
 
 

@@ -19,7 +19,7 @@ from ..mesh_state.references import registered_objects
 from ..mesh_state.state import MeshState, read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
-from ..outputs import part_writer
+from ..outputs import output_registry, part_writer
 from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from ..parts import mesh_segmentation
@@ -125,7 +125,7 @@ def write_all(
 
 def write_reference(obj: bpy.types.Object, reference: PreparedReference) -> Segmented:
     """Let a reference show its parts; all of them are written or nothing."""
-    part_writer.refuse_foreign_results(read(mesh_of(obj)))
+    output_registry.refuse_foreign_results(read(mesh_of(obj)))
     shown = mesh_segmentation.write(
         mesh_of(obj), reference.result, mode=reference.mode, choice={"level": reference.level}
     )
@@ -161,7 +161,7 @@ def write_target(
     reference : Object or None
         The object that is the reference, None if it is in another file.
     """
-    part_writer.refuse_foreign_results(read(mesh))
+    output_registry.refuse_foreign_results(read(mesh))
     with all_or_nothing(mesh):
         result = shape.result
         lost = analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)

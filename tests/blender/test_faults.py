@@ -18,9 +18,9 @@ from tests.blender.failing import (
 )
 
 WRITERS = (
-    *("stored_analysis.write_attribute", "stored_analysis.packed", "stored_analysis.packed_array"),
-    "analysis_writer.remove_own_attributes",
-    *("division_writer.write_attribute", "vertex_map.write_attribute", "corner_colours.write_attribute"),
+    *("mesh_arrays.write_attribute", "stored_analysis.packed", "stored_analysis.packed_array"),
+    "mesh_arrays.remove_own_attributes",
+    *("division_writer.write_attributes", "vertex_map.write_attribute", "corner_colours.write_attribute"),
     *("division_writer.number_parts", "division_writer.list_parts", "function_hints.packed_hints"),
 )
 
@@ -48,7 +48,7 @@ def test_out_of_memory_while_an_analysis_is_written_changes_nothing(star_object,
 
 
 @pytest.mark.parametrize(
-    "writer", ["stored_analysis.write_attribute", "division_writer.write_attribute", "mesh_registration.match_of"]
+    "writer", ["mesh_arrays.write_attribute", "division_writer.write_attributes", "mesh_registration.match_of"]
 )
 def test_a_registration_is_written_to_all_meshes_or_to_none(star, monkeypatch, writer):
     objects = [add_object((1 + k) * star.vertices, star.triangles, f"star {k}") for k in range(3)]
@@ -127,9 +127,9 @@ CHANGES = {
 }
 # Everything that is written with, down to what hands groups and materials over to Blender.
 LEVEL_WRITERS = (
-    *("division_writer.write_attribute", "division_writer.list_parts", "division_writer.number_parts"),
+    *("division_writer.write_attributes", "division_writer.list_parts", "division_writer.number_parts"),
     *("division_writer.packed", "division_writer.remember"),
-    *("corrections.write_attribute", "corrections.packed_branches", "corrections.remove_own_attributes"),
+    *("mesh_arrays.write_attribute", "corrections.packed_branches", "mesh_arrays.remove_own_attributes"),
     *("vertex_map.write_attribute", "corner_colours.write_attribute", "face_sets.write_attribute"),
     *("field_values.write_attribute", "vertex_groups._groups", "vertex_groups._fill_softly", "vertex_groups._drop"),
     *("material_slots._slot", "material_slots._dress", "material_slots._assign", "material_slots._drop_slots"),
