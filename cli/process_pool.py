@@ -23,7 +23,7 @@ import bpy
 from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
 from .atomic_write import discard
 from .jobs import Job
-from .report import Report, path_beside
+from .report import Report, path_beside, without_version
 from .run_serial import failed_report
 
 # A process does up to so many files, as it takes a second or two to start.
@@ -234,8 +234,11 @@ def _reports_in(text: str) -> list[Report]:
 
 def _as_given(report: Report, job: Job) -> Report:
     """Return a report with paths as the user gave them."""
-    output = {"output": str(job.target)} if "output" in report else {}
-    return {name: value for name, value in report.items() if name != "version"} | {"file": str(job.path)} | output
+    given = without_version(report)
+    given["file"] = str(job.path)
+    if "output" in given:
+        given["output"] = str(job.target)
+    return given
 
 
 def _end_of(process: "subprocess.CompletedProcess[str]") -> str:

@@ -12,7 +12,7 @@ from ..operators.outputs.level_choice import LevelChoice
 from ..operators.parts import mesh_segmentation
 from . import formats
 from .objects import analysis_settings, chosen_objects, report_each, row_of
-from .report import Report
+from .report import ObjectRow, Settings
 
 
 class Segment:
@@ -22,17 +22,17 @@ class Segment:
         self._options = options
 
     @property
-    def settings(self) -> Report:
+    def settings(self) -> Settings:
         """All that the results depend on besides the files."""
         options = self._options
         given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
         return {"command": "segment", **given, "choice": choice_of(options)}
 
-    def open_and_process(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[ObjectRow]:
         """Leave a file open with its meshes divided, and return a row for each."""
         return report_each(chosen_objects(formats.load(path), self._options.object), self._divide)
 
-    def _divide(self, obj: bpy.types.Object) -> Report:
+    def _divide(self, obj: bpy.types.Object) -> ObjectRow:
         given = mesh_segmentation.read(bpy.context, obj, analysis_settings(self._options))
         result = mesh_segmentation.analyze(given, silent)
         segmented = mesh_segmentation.write(

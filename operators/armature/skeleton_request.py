@@ -30,7 +30,8 @@ from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 # How many shapes are remembered by their symmetry.
 RECENT_SYMMETRIES = 8
-_recent_partners = Recent(RECENT_SYMMETRIES)
+# A tuple of one: that a shape has no symmetry is remembered, too.
+_recent_partners: Recent[tuple[NDArray[np.int64] | None]] = Recent(RECENT_SYMMETRIES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +154,7 @@ def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
     return [bone_layout.NO_BONES.format(reference.name)]
 
 
-def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: Callable[[float, str], None]) -> NamedSkeleton:
+def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: compute.Progress) -> NamedSkeleton:
     """Run the engine; knows nothing of Blender, so any thread may do it."""
 
     def of_analysis(fraction: float, text: str) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import bpy
 
+from ...compute.progress import Progress, silent
 from ..blender.known_values import present
 from ..blender.mixins import OperatorMixin
 from ..blender.outcome import Outcome
@@ -13,13 +14,13 @@ from ..messages import unexpected_errors
 from ..messages.sentences import in_language, tell
 from ..messages.unexpected_errors import errors_told
 from ..messages.user_errors import refusals_told
-from .job import Job
+from .job import Job, Result
 from .threads import use_preferred_threads
 
 # Seconds between looks at the job; redrawing more often only takes time from it.
 INTERVAL = 0.1
 
-_running: Job | None = None
+_running: Job[Any] | None = None
 
 
 class BackgroundOperator(OperatorMixin):
@@ -40,7 +41,7 @@ class BackgroundOperator(OperatorMixin):
     def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
             work, handle = self.begin(context)
-            return self.finish(context, handle, work(_silent))
+            return self.finish(context, handle, work(silent))
         return {"CANCELLED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
@@ -106,14 +107,14 @@ def stop_running_job() -> None:
     _running = None
 
 
-def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
+def _start(work: Callable[[Progress], Result]) -> Job[Result]:
     global _running
     use_preferred_threads()
-    _running = Job(work)
-    return _running
+    _running = job = Job(work)
+    return job
 
 
-def _show_progress(context: bpy.types.Context, operator: str, job: Job) -> None:
+def _show_progress(context: bpy.types.Context, operator: str, job: Job[Any]) -> None:
     status = job_status(context)
     text = in_language(job.text)
     shown = in_language(f"Eigenparts: {text} ({job.fraction:.0%}), ESC to cancel")
@@ -131,7 +132,3 @@ def _redraw_sidebars(context: bpy.types.Context) -> None:
         for region in area.regions:
             if area.type == "VIEW_3D" and region.type == "UI":
                 region.tag_redraw()
-
-
-def _silent(fraction: float, text: str) -> None:
-    """Scripts wait without being told."""

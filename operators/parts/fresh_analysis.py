@@ -34,7 +34,7 @@ class FreshAnalysis(AnalysisRequest):
         raise NotImplementedError
 
 
-def analyze_topology(given: AnalysisInput, progress: Callable[[float, str], None]) -> compute.Analysis:
+def analyze_topology(given: AnalysisInput, progress: compute.Progress) -> compute.Analysis:
     """Return an analysis with its persistence diagram; knows nothing of Blender, so any thread may do it."""
     analysis = recent_analyses.recall(given.arrays, given.options, progress)
     # The longer part of the topology is made here, in the thread.

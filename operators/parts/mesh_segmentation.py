@@ -26,8 +26,6 @@ from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from .analysis_settings import AnalysisInput, AnalysisSettings, read_input
 
-Progress = Callable[[float, str], None]
-
 
 @dataclass(frozen=True, eq=False)
 class AnalysisResult:
@@ -77,7 +75,7 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
 
 def analyze(
     given: AnalysisInput,
-    progress: Progress,
+    progress: compute.Progress,
     analysis_of: Callable[..., compute.Analysis] = recent_analyses.analyze,
 ) -> AnalysisResult:
     """Run the engine; knows nothing of Blender, so any thread may do it."""

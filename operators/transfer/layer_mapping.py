@@ -18,8 +18,6 @@ from ..registration.match_options import MatchOptions
 from . import layers
 from .layers import Layer
 
-Progress = Callable[[float, str], None]
-
 # What an analysis needs for matching.
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
 # Vertices of all maps that are kept; each takes a tenth of a kB.
@@ -31,7 +29,7 @@ NOT_ALIKE = (
     " image of the other, choose Mirrored."
 )
 
-_recent_maps = Recent(RECENT_VERTICES)
+_recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +98,7 @@ class MappedLayers:
 
 
 def map_to_all(
-    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: Progress
+    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: compute.Progress
 ) -> list[MappedLayers]:
     """Return the layers that each target gets.
 
@@ -114,17 +112,19 @@ def map_to_all(
     return [_mapped(shape_map, source, target, given, fills) for shape_map, target in zip(maps, targets, strict=True)]
 
 
-def _recall_maps(source: TransferShape, targets: list[TransferShape], progress: Progress) -> list[ShapeMap]:
+def _recall_maps(source: TransferShape, targets: list[TransferShape], progress: compute.Progress) -> list[ShapeMap]:
     """Return the maps to all targets; those that were found for other layers before are at hand."""
     keys = [_key_of_map(source, target) for target in targets]
-    known = {key: _recent_maps.get(key) for key in keys}
-    missing = {key: target for key, target in zip(keys, targets, strict=True) if known[key] is None}
+    known = {key: found for key in keys if (found := _recent_maps.get(key)) is not None}
+    missing = {key: target for key, target in zip(keys, targets, strict=True) if key not in known}
     if missing:
         known |= _new_maps(source, missing, progress)
     return [known[key] for key in keys]
 
 
-def _new_maps(source: TransferShape, targets: Mapping[str, TransferShape], progress: Progress) -> dict[str, ShapeMap]:
+def _new_maps(
+    source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
+) -> dict[str, ShapeMap]:
     # All are analyzed first: what cannot be is told before the longer part begins.
     first, *others = _steps(compute.section(progress, 0, 0.3), 1 + len(targets))
     source_analysis = _analyze(source, first, recent_analyses.recall)
@@ -146,7 +146,7 @@ def _key_of_map(source: TransferShape, target: TransferShape) -> str:
     return key_of([*places, options.mirrored, sorted(options.flips.items()), options.alternative])
 
 
-def _steps(progress: Progress, number: int) -> list[Progress]:
+def _steps(progress: compute.Progress, number: int) -> list[compute.Progress]:
     """Return callbacks whose 0..1 are equal steps, one after the other."""
     return [compute.section(progress, k / number, (k + 1) / number) for k in range(number)]
 
@@ -166,7 +166,7 @@ def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
 
 
 def _analyze(
-    shape: TransferShape, progress: Progress, analysis_of: Callable[..., compute.Analysis]
+    shape: TransferShape, progress: compute.Progress, analysis_of: Callable[..., compute.Analysis]
 ) -> compute.Analysis:
     """Return an analysis that is just enough for matching."""
     with in_name_of(shape.name):
@@ -178,7 +178,7 @@ def _correspond(
     target: TransferShape,
     source_analysis: compute.Analysis,
     target_analysis: compute.Analysis,
-    progress: Progress,
+    progress: compute.Progress,
 ) -> compute.Correspondence:
     options = target.options
     matching = compute.match(
