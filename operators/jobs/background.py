@@ -31,10 +31,10 @@ class BackgroundOperator(OperatorMixin):
     """
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Any], Any]:
-        """Read what is needed, and return the work and a ticket."""
+        """Read what is needed, and return the work and a handle."""
         raise NotImplementedError
 
-    def finish(self, context: bpy.types.Context, ticket: Any, result: Any) -> Outcome:
+    def finish(self, context: bpy.types.Context, handle: Any, result: Any) -> Outcome:
         """Write the result of the work."""
         raise NotImplementedError
 
