@@ -26,7 +26,7 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
         rows = rows_of_bones(skeleton.parent, skeleton.part, skeleton.loops)
         names = part_names(mesh_of(obj), skeleton)
         curve = add_curve(obj, [(skeleton.joints[row], skeleton.radius[row]) for row in rows])
-        mesh_of(curve)[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
+        present(curve.data)[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
         present(context.view_layer).objects.active = curve
         curve.select_set(True)
         return Messages((f"{len(rows)} splines in {curve.name}.",))
