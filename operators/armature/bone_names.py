@@ -42,13 +42,13 @@ def name_bones(
     seen: Counter[int] = Counter()
     given = [_free(ROOT, "", taken)]
     for joint in range(1, len(parent)):
-        own, goal = int(part[joint]), goals[joint]
-        base, suffix = sided[goal if goal >= 0 else own]
+        limb, goal = int(part[joint]), goals[joint]
+        base, suffix = sided[goal if goal >= 0 else limb]
         if goal >= 0:
             base = _shortened(base, LONGEST_BASE) + " root"
-        elif count[own] > 1:
-            seen[own] += 1
-            base = f"{_shortened(base, LONGEST_BASE)}_{seen[own]}"
+        elif count[limb] > 1:
+            seen[limb] += 1
+            base = f"{_shortened(base, LONGEST_BASE)}_{seen[limb]}"
         given.append(_free(base, suffix, taken.union(given)))
     return given
 

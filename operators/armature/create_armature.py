@@ -112,8 +112,8 @@ def bind_automatically(context: bpy.types.Context, obj: bpy.types.Object, armatu
 
 
 def _is_bound(obj: bpy.types.Object, names: list[str]) -> bool:
-    own = {group.index for group in obj.vertex_groups if group.name in names}
-    return any(element.group in own for vertex in mesh_of(obj).vertices for element in vertex.groups)
+    of_bones = {group.index for group in obj.vertex_groups if group.name in names}
+    return any(element.group in of_bones for vertex in mesh_of(obj).vertices for element in vertex.groups)
 
 
 def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: NamedSkeleton, names: list[str]) -> None:

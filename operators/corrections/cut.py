@@ -113,7 +113,7 @@ def _show(mesh: bpy.types.Mesh, arcs: list[NDArray[np.int64]], level: int, mode:
 
 
 def _tell_change(operator: bpy.types.Operator, state: MeshState, before: dict[int, float]) -> None:
-    """Warn of the part that a cut has changed most, if notably: what hangs together within faces only falls apart."""
+    """Warn of the part that a cut has changed most if it is notable: what hangs together within faces falls apart."""
     after = state.summary.shares
     change = {part: abs(after.get(part, 0.0) - before.get(part, 0.0)) for part in {**before, **after} if part}
     part = max(change, key=change.__getitem__, default=0)

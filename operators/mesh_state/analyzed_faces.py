@@ -1,4 +1,4 @@
-"""The faces of a mesh as they were analyzed: which of them meet, and how the field rises over them."""
+"""The faces of a mesh as they were analyzed: their graph, and the field over them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class AnalyzedFaces:
 
     @cached_property
     def graph(self) -> compute.FaceGraph:
-        """Which faces meet."""
+        """The graph of the faces that meet."""
         return compute.face_graph(self._triangles, self._surface, self._arrays.polygon_of_triangle)
 
     @cached_property

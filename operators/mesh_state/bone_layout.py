@@ -1,4 +1,4 @@
-"""Which bones a mesh was given, kept with its analysis so that registered meshes can be given the same ones."""
+"""The layout of the bones that a mesh was given, kept with its analysis so that registered meshes get the same."""
 
 from __future__ import annotations
 

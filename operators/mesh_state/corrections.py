@@ -1,4 +1,4 @@
-"""What is stored of corrections by hand: plain numbers in the state, and the part of each painted face."""
+"""Corrections by hand as they are stored: plain numbers in the state, and the part of each painted face."""
 
 from __future__ import annotations
 

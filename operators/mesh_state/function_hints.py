@@ -1,4 +1,4 @@
-"""Which eigenfunctions suit a mesh: kept from an analysis that computed some, for the panel and for the report."""
+"""The eigenfunctions that suit a mesh: kept from an analysis that computed some, for the panel and for the report."""
 
 from __future__ import annotations
 

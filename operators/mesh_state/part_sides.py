@@ -1,4 +1,4 @@
-"""Which parts of a mesh are left and right, kept with its analysis so that registered meshes can be told alike."""
+"""The left and right parts of a mesh, kept with its analysis so that registered meshes get the same sides."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What the parts of a mesh are called and which colours they have: kept by part, whatever level is shown.
+"""Names and colours of the parts of a mesh: kept by part, whatever level is shown.
 
 Until the user gives a part a name it is called after the part it grew out of when it was first seen, so that a name
 never changes by itself: "Part 2.1" is the first part that was found in "Part 2".
@@ -23,7 +23,7 @@ BODY = "Body"
 
 @dataclass(frozen=True)
 class PartTable:
-    """What is known of the parts of a mesh, by their numbers.
+    """Places, names and colours of the parts of a mesh, by their numbers.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a mesh remembers of its registration, and its own names and colours while it shows those of another."""
+"""The registration of a mesh as it is stored, and its own names and colours while it shows those of another."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NOT_ITS_OWN = "The mesh shows the parts of another object, which have no borders
 
 @dataclass(frozen=True)
 class Match:
-    """How a mesh was matched with its reference, for the panel and for trying again.
+    """The match of a mesh with its reference, for the panel and for trying again.
 
     Attributes
     ----------

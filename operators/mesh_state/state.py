@@ -1,4 +1,4 @@
-"""What a mesh remembers, read once for each action; the only place that opens the state on a mesh.
+"""The state of a mesh, read once for each action; the only place that opens it.
 
 The trees and tables are plain numbers and texts in the mesh's custom properties; the branch of each face is an
 attribute. So any level is one look-up: also after a load, an undo or on a copy. Nothing is trusted when it is read
@@ -41,7 +41,7 @@ STATE = "eigenparts_state"
 
 @dataclass(frozen=True, eq=False)
 class MeshState:
-    """What a mesh remembers.
+    """The state of a mesh: all that it remembers, as typed values.
 
     Each value is decoded and checked when it is first asked for, so that whoever needs a name pays for names only.
     What an action needs has to be asked for before it writes to the mesh.
@@ -96,7 +96,7 @@ class MeshState:
 
     @property
     def n_parts(self) -> int:
-        """How many parts the mesh shows, 0 where they cannot be read."""
+        """The number of parts that the mesh shows, 0 where they cannot be read."""
         return len(self.summary.parts) if self.is_readable else 0
 
     @property
@@ -121,7 +121,7 @@ class MeshState:
 
     @cached_property
     def shells(self) -> str:
-        """What was done with loose parts."""
+        """The choice for loose parts that the mesh was analyzed with."""
         shells = self.get(schema.SHELLS)
         return shells if shells in compute.SHELLS else compute.SHELLS[0]
 
@@ -157,7 +157,7 @@ class MeshState:
 
     @cached_property
     def border_source(self) -> BorderSource:
-        """What borders are cut from; raises a Refusal if it is not there."""
+        """The heights and arcs that borders are cut from; raises a Refusal if it is not there."""
         return stored_analysis.unpacked_source(self.mesh, self.readable, self.analysis.part_tree)
 
     @cached_property
@@ -187,13 +187,13 @@ class MeshState:
 
     @cached_property
     def registration(self) -> Registration | None:
-        """How the mesh was registered; None if it shows parts of its own."""
+        """The registration of the mesh; None if it shows parts of its own."""
         group = self.get(schema.REGISTRATION)
         return registration_record.unpacked_registration(group) if hasattr(group, "to_dict") else None
 
     @property
     def match(self) -> Match | None:
-        """How the mesh was matched with another; None if it was not, or what is stored makes no sense."""
+        """The match with another mesh; None if there is none, or what is stored makes no sense."""
         return None if self.registration is None else self.registration.match
 
     @property

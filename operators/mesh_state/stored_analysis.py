@@ -52,7 +52,7 @@ class StoredAnalysis:
 
 @dataclass(frozen=True, eq=False)
 class BorderSource:
-    """What the borders of every level are cut from.
+    """The heights and arcs that the borders of every level are cut from.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ def packed_branches(branches: tuple[compute.Branches, ...]) -> dict[str, Any]:
 
 
 def packed_source(source: BorderSource) -> dict[str, Any]:
-    """Return what goes into the state of the source of borders, beside its attributes."""
+    """Return the values of the state that belong to the attributes of a source of borders."""
     return {INSIDE_EDGES: source.profile.heights[:, 1:-1].shape[1]}
 
 

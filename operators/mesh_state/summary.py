@@ -1,4 +1,4 @@
-"""What the panel shows of an analysis; read at every redraw, so no large array is decoded for it."""
+"""The summary of an analysis for the panel; read at every redraw, so no large array is decoded for it."""
 
 from __future__ import annotations
 

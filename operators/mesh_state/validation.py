@@ -43,17 +43,20 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
 
 def _are_sound_measures(measures: compute.ArcMeasures, n_arcs: int) -> bool:
     columns = (measures.height, measures.closing_length, measures.longest, measures.roundness)
-    return all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns)
+    if not all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns):
+        return False
+    # The closing level set is one of those among which the longest was found.
+    return bool((measures.longest >= measures.closing_length).all())
 
 
 def _are_sound_shells(tree: compute.ArcTree) -> bool:
     """Whether whole shells stand under the root, with numbers of their own that follow those of the roots."""
     is_shell, root = tree.is_shell, len(tree.parent) - 1
-    own = tree.n_roots + 1 + np.arange(-int(is_shell.sum()), 0)
+    numbers = tree.n_roots + 1 + np.arange(-int(is_shell.sum()), 0)
     return (
-        np.array_equal(tree.part[is_shell], own)
+        np.array_equal(tree.part[is_shell], numbers)
         and bool((tree.parent[is_shell] == root).all())
-        and not np.isin(tree.part[~is_shell], own).any()
+        and not np.isin(tree.part[~is_shell], numbers).any()
     )
 
 

@@ -79,13 +79,15 @@ def restore(mesh: bpy.types.Mesh, kept: list[Slot]) -> None:
 
     Others of ours that nobody uses are removed.
     """
-    own = {_own_part(material): material for material in mesh.materials if _is_own(material)}
+    material_of_part = {_own_part(material): material for material in mesh.materials if _is_own(material)}
     while len(mesh.materials) > len(kept):
         mesh.materials.pop(index=len(mesh.materials) - 1)
     while len(mesh.materials) < len(kept):
         mesh.materials.append(None)
     for slot, known in enumerate(kept):
-        mesh.materials[slot] = (own.get(known) or _new_material(known)) if isinstance(known, int) else known
+        mesh.materials[slot] = (
+            (material_of_part.get(known) or _new_material(known)) if isinstance(known, int) else known
+        )
     for material in [material for material in bpy.data.materials if _is_own(material) and material.users == 0]:
         bpy.data.materials.remove(material)
 

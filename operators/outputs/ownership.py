@@ -1,4 +1,4 @@
-"""What stands where only we write: it is ours, also where the list of our attributes was damaged, or it is refused."""
+"""The attributes that are ours, known again where the list of them was damaged; others in their place are refused."""
 
 import bpy
 

@@ -100,7 +100,7 @@ def _blocks() -> Iterator[bpy.types.ID]:
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    """All that a mesh has of ours, and its places among what is the user's.
+    """All that a mesh has of ours, and the places it has among what is the user's.
 
     Attributes
     ----------

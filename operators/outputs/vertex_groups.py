@@ -66,8 +66,7 @@ def _own_groups(mesh: bpy.types.Mesh) -> dict[int, str]:
 
 def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) -> dict[int, bpy.types.VertexGroup]:
     """Return an empty group for each part; those of parts that are gone are removed."""
-    own = _own_groups(mesh)
-    _drop(obj, own.values())
+    _drop(obj, _own_groups(mesh).values())
     # Where the user has a group of that name, Blender gives ours a number.
     groups = {part: obj.vertex_groups.new(name=name) for part, name in names.items()}
     mesh[OWN_GROUPS] = {str(part): group.name for part, group in groups.items()}

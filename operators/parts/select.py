@@ -78,7 +78,7 @@ def select_faces_of(mesh: bpy.types.Mesh, part: int) -> None:
 
 
 def selected_faces(mesh: bpy.types.Mesh) -> NDArray[np.bool_]:
-    """Mask (F,) of the faces that are selected, of a mesh that is not in edit mode."""
+    """Mask (F,) of the selected faces of a mesh that is not in edit mode."""
     selection = np.empty(len(mesh.polygons), dtype=bool)
     mesh.polygons.foreach_get("select", selection)
     return selection

@@ -54,10 +54,10 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
     if len(parts) < 2:
         raise Refusal("The mesh is one part; there is nothing to separate.")
     names = {part: f"{obj.name} {state.parts.name_of(part)}" for part in parts}
-    own, *meshes = [_mesh_of_part(mesh, labels == part, names[part]) for part in parts]
+    first, *meshes = [_mesh_of_part(mesh, labels == part, names[part]) for part in parts]
     others = [_copy(obj, piece, names[part]) for part, piece in zip(parts[1:], meshes, strict=True)]
     # From here on nothing can fail.
-    obj.data = own
+    obj.data = first
     if mesh.users == 0:
         bpy.data.meshes.remove(mesh)
     return [obj, *others]

@@ -1,4 +1,4 @@
-"""What can be corrected by hand of the active part of a mesh, and the list of corrections, among its settings."""
+"""Corrections by hand of the active part, and the list of all of them, among the settings of a mesh."""
 
 import bpy
 

@@ -44,7 +44,7 @@ def _set_n_parts(settings: "EigenpartsMeshSettings", n_parts: int) -> tuple[str,
 
 
 class EigenpartsMeshSettings(PartList, CorrectionSettings, OutputSettings, TypedProperties, bpy.types.PropertyGroup):
-    """What a mesh shows now."""
+    """Level, parts, corrections and outputs of a mesh."""
 
     mode: str = EnumProperty(
         name="Mode",

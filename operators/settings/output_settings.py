@@ -35,7 +35,7 @@ def _set_softness(settings: "OutputSettings", width: float) -> None:
 
 
 class OutputSettings(TypedProperties, GroupMixin):
-    """What the parts of a mesh are written to."""
+    """The outputs that a mesh is to have."""
 
     softness: float = FloatProperty(
         name="Softness",

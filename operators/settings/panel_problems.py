@@ -1,4 +1,4 @@
-"""What the panel says when a property of a mesh cannot be set: a property cannot report."""
+"""Warnings and refusals of the setters of properties, for the panel: a property cannot report."""
 
 from collections.abc import Callable
 from functools import wraps

@@ -1,4 +1,4 @@
-"""What the user prefers in all files: the colours of parts, and how many cores an analysis may take."""
+"""Preferences of the user in all files: the colours of parts, and how many cores an analysis may take."""
 
 from typing import Any, cast
 

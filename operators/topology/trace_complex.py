@@ -52,18 +52,18 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, TypedProperties, bpy.types.Oper
     )
 
     def show(self, context: bpy.types.Context, owner: bpy.types.Object, analysis: "compute.Analysis") -> str:
-        found = traced_complex(analysis, self.level if self.level >= 0 else shown_level(mesh_of(owner), analysis))
+        traced = traced_complex(analysis, self.level if self.level >= 0 else shown_level(mesh_of(owner), analysis))
         size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
         with nothing_left_behind(context):
-            lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in found.lines.items()}
-            dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in found.dots.items()}
+            lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in traced.lines.items()}
+            dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in traced.dots.items()}
             # What is there from before goes only when there is something to take its place.
             collection = empty_collection(context, owner.name)
             for role, data in {**lines, **dots}.items():
                 obj = add_object(collection, owner, role, data)
                 if role in dots:
-                    obj["places"] = found.dots[role].ravel().tolist()
-        n_dots = sum(len(places) for places in found.dots.values())
+                    obj["places"] = traced.dots[role].ravel().tolist()
+        n_dots = sum(len(places) for places in traced.dots.values())
         return f'{n_dots} critical points are in the collection "{collection.name}".'
 
 

@@ -40,6 +40,7 @@ REFUSED = [
     ("analysis", ("tree_0",), ("gone", "text", "no group"), DAMAGED),
     ("analysis", ("tree_0", "parent", "values"), ("all zero", "cut short", "all huge", "no numbers"), DAMAGED),
     ("analysis", ("tree_0", "n_features"), ("gone", "negative", "nan", "text"), DAMAGED),
+    ("analysis", ("tree_0", "closing_length", "values"), ("all huge", "all negative", "cut short"), DAMAGED),
     ("analysis", ("hierarchy", "pairs", "shape"), ("gone", "all huge", "texts"), DAMAGED),
     ("analysis", ("branches_0", "arc", "values"), ("one huge", "one negative", "texts"), DAMAGED),
     ("analysis", ("branches_0", "area", "dtype"), ("text", "zero"), DAMAGED),
