@@ -3,6 +3,7 @@
 import argparse
 import shlex
 from pathlib import Path
+from typing import TypeAlias
 
 from .. import compute
 from ..operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS_OF_FILES
@@ -30,7 +31,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return options
 
 
-Commands = "argparse._SubParsersAction[argparse.ArgumentParser]"
+Commands: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def _add_segment(commands: Commands) -> None:

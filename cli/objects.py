@@ -7,12 +7,13 @@ import bpy
 
 from .. import compute
 from ..compute.errors import EngineError
+from ..operators.blender.known_values import mesh_of
 from ..operators.messages.sentences import Messages
 from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_settings import AnalysisSettings
 from ..operators.parts.choice_items import ATTRIBUTE, EIGENFUNCTION, identifier
 from ..operators.parts.mesh_segmentation import AnalysisResult
-from .report import Report, part_rows
+from .report import ObjectRow, part_rows
 
 
 def chosen_objects(objects: list[bpy.types.Object], name: str | None) -> list[bpy.types.Object]:
@@ -24,7 +25,7 @@ def chosen_objects(objects: list[bpy.types.Object], name: str | None) -> list[bp
     return chosen
 
 
-def report_each(objects: list[bpy.types.Object], work: Callable[[bpy.types.Object], Report]) -> list[Report]:
+def report_each(objects: list[bpy.types.Object], work: Callable[[bpy.types.Object], ObjectRow]) -> list[ObjectRow]:
     """Return a row for each object; what is wrong with one does not stop the others of its file."""
     return [_report(obj, work) for obj in objects]
 
@@ -44,19 +45,19 @@ def row_of(
     labels: "compute.BranchLabels | compute.FaceLabels",
     result: AnalysisResult,
     messages: Messages,
-) -> Report:
+) -> ObjectRow:
     """Return the row of a divided object in the report."""
     return {
         "name": obj.name,
         "level": labels.level,
         "n_levels": result.stored.part_tree.hierarchy.n_levels,
-        "parts": part_rows(obj.data, labels),
+        "parts": part_rows(mesh_of(obj), labels),
         "seconds": round(result.seconds, 3),
         "warnings": list(messages.warnings),
     }
 
 
-def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], Report]) -> Report:
+def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], ObjectRow]) -> ObjectRow:
     try:
         return work(obj)
     except (Refusal, EngineError) as refusal:

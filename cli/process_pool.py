@@ -20,10 +20,10 @@ from pathlib import Path
 
 import bpy
 
-from ..operators.messages.user_errors import Refusal
+from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
 from .atomic_write import discard
 from .jobs import Job
-from .report import Report, path_beside
+from .report import Report, path_beside, without_version
 from .run_serial import failed_report
 
 # A process does up to so many files, as it takes a second or two to start.
@@ -174,10 +174,11 @@ def cluster_pool(options: argparse.Namespace) -> Iterator[ProcessPool]:
     except ImportError as error:
         raise Refusal('--scheduler needs dask in this Python: pip install "distributed".') from error
     try:
-        client = Client(options.scheduler, timeout=PATIENCE)
+        # Dask has no types here.
+        client = Client(options.scheduler, timeout=PATIENCE)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise Refusal(f"no dask scheduler answers at {options.scheduler}.") from error
-    with client, client.get_executor() as executor:
+    with client, client.get_executor() as executor:  # type: ignore[no-untyped-call]
         command = options.worker_command or own_command()
         yield ProcessPool(
             executor=executor,
@@ -202,7 +203,10 @@ def own_command() -> list[str]:
     """Return what starts this command line on this machine: the application, or Python with Blender as a module."""
     if bpy.app.binary_path:
         return [bpy.app.binary_path, "--background", "--command", "eigenparts"]
-    folder_of_scipy = Path(find_spec("scipy").origin).parents[1]
+    scipy = find_spec("scipy")
+    if scipy is None or scipy.origin is None:
+        raise Refusal(MISSING_SCIPY)
+    folder_of_scipy = Path(scipy.origin).parents[1]
     return [sys.executable, "-P", str(Path(__file__).with_name("launch.py")), str(folder_of_scipy)]
 
 
@@ -230,8 +234,11 @@ def _reports_in(text: str) -> list[Report]:
 
 def _as_given(report: Report, job: Job) -> Report:
     """Return a report with paths as the user gave them."""
-    output = {"output": str(job.target)} if "output" in report else {}
-    return {name: value for name, value in report.items() if name != "version"} | {"file": str(job.path)} | output
+    given = without_version(report)
+    given["file"] = str(job.path)
+    if "output" in given:
+        given["output"] = str(job.target)
+    return given
 
 
 def _end_of(process: "subprocess.CompletedProcess[str]") -> str:

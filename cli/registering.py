@@ -11,6 +11,7 @@ import bpy
 
 from ..compute.errors import EngineError
 from ..compute.progress import silent
+from ..operators.blender.known_values import mesh_of
 from ..operators.messages.user_errors import Refusal
 from ..operators.registration import mesh_registration, shape_registration
 from ..operators.registration.match_options import MatchOptions
@@ -18,7 +19,7 @@ from ..operators.registration.mesh_registration import SharedParts
 from ..operators.registration.shape_registration import PreparedReference
 from . import formats
 from .objects import analysis_settings, chosen_objects, report_each, row_of
-from .report import Report
+from .report import ObjectRow, Settings
 from .resume import digest_of
 from .segmenting import choice_of
 
@@ -39,7 +40,7 @@ class Register:
         self._first_free = 0
 
     @cached_property
-    def settings(self) -> Report:
+    def settings(self) -> Settings:
         """All that the results depend on besides the files."""
         options = self._options
         if not options.source.is_file():
@@ -49,7 +50,7 @@ class Register:
         chosen_parts = {"choice": choice_of(options), "mirrored": options.mirrored}
         return {"command": "register", **given, **chosen_parts, "source": source}
 
-    def open_and_process(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[ObjectRow]:
         """Leave a file open with its meshes divided, and return a row for each."""
         # The reference opens a file of its own, so it comes first.
         reference = self._reference
@@ -66,24 +67,25 @@ class Register:
         except (Refusal, EngineError) as error:
             raise Refusal(f"the reference {self._options.source}: {error}") from error
 
-    def _show(self, obj: bpy.types.Object) -> Report:
+    def _show(self, obj: bpy.types.Object) -> ObjectRow:
         """Divide the reference itself."""
         prepared = self._reference.prepared
         shown = mesh_registration.write_reference(obj, prepared)
         return row_of(obj, shown.labels, prepared.result, shown.messages)
 
-    def _divide(self, obj: bpy.types.Object, reference: bpy.types.Object | None = None) -> Report:
+    def _divide(self, obj: bpy.types.Object, reference: bpy.types.Object | None = None) -> ObjectRow:
         """Give a mesh the parts of the reference, which is an object of the same file or of another."""
         prepared, shared = self._reference.prepared, self._reference.shared
         given = mesh_registration.read_target(bpy.context, obj, shared.settings)
         first_free = max(self._first_free, prepared.highest_label + 1)
         shape = shape_registration.register_one(prepared, given, shared.options, first_free, silent)
-        messages = mesh_registration.write_target(obj.data, shape, shared, reference)
+        messages = mesh_registration.write_target(mesh_of(obj), shape, shared, reference)
         self._first_free = max(first_free, shape.highest_label + 1)
         row = row_of(obj, shape.labels, shape.result, messages)
         for part in row["parts"]:
             part["matched"] = part["id"] <= prepared.highest_label
-        return row | {"reference": prepared.name, "confidence": round(float(shape.matching.confidence), 4)}
+        row["reference"], row["confidence"] = prepared.name, round(float(shape.matching.confidence), 4)
+        return row
 
 
 def _prepare(options: argparse.Namespace) -> Reference:

@@ -56,7 +56,8 @@ class JsonDocument:
     """One document at the end."""
 
     def __init__(self, out: TextIO) -> None:
-        self._out, self._reports = out, []
+        self._out = out
+        self._reports: list[Report] = []
 
     def add(self, report: Report) -> None:
         """Keep the report."""

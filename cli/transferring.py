@@ -17,7 +17,7 @@ from ..operators.transfer.layer_reading import LayerChoice
 from ..operators.transfer.mesh_transfer import TransferSettings, TransferSource
 from . import formats
 from .objects import chosen_objects, report_each
-from .report import Report
+from .report import ObjectRow, Settings
 from .resume import digest_of
 
 
@@ -28,7 +28,7 @@ class Transfer:
         self._options = options
 
     @cached_property
-    def settings(self) -> Report:
+    def settings(self) -> Settings:
         """All that the results depend on besides the files."""
         options = self._options
         if not options.source.is_file():
@@ -37,7 +37,7 @@ class Transfer:
         given = {"object": options.object, "layers": options.layers, "mirrored": options.mirrored}
         return {"command": "transfer", **given, "source": source}
 
-    def open_and_process(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[ObjectRow]:
         """Leave a file open whose meshes have the layers of the source, and return a row for each."""
         # The source opens a file of its own, so it comes first.
         source = self._source
@@ -61,7 +61,7 @@ class Transfer:
         kinds = frozenset(kind.upper() for kind in self._options.layers)
         return TransferSettings(LayerChoice(kinds, "ALL", (), self._options.mirrored))
 
-    def _transfer(self, obj: bpy.types.Object) -> Report:
+    def _transfer(self, obj: bpy.types.Object) -> ObjectRow:
         start = time.perf_counter()
         source, settings = self._source, self._settings
         target = mesh_transfer.read_target(bpy.context, obj, source, settings)
@@ -70,7 +70,7 @@ class Transfer:
         return _row(obj, source, mapped[0], messages) | {"seconds": round(time.perf_counter() - start, 3)}
 
 
-def _row(obj: bpy.types.Object, source: TransferSource, mapped: MappedLayers, messages: Messages) -> Report:
+def _row(obj: bpy.types.Object, source: TransferSource, mapped: MappedLayers, messages: Messages) -> ObjectRow:
     return {
         "name": obj.name,
         "source": source.name,

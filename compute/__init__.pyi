@@ -27,6 +27,7 @@ from .msc.morse_smale import MorseSmaleComplex as MorseSmaleComplex
 from .msc.reeb import ReebGraph as ReebGraph
 
 # What the extension asks for beside it.
+from .progress import Progress as Progress
 from .progress import naming as naming
 from .progress import section as section
 from .progress import silent as silent
@@ -67,6 +68,7 @@ from .segmentation.edits.corrections import Corrections as Corrections
 from .segmentation.edits.part_tracking import carried as carried
 from .segmentation.edits.part_tracking import carried_painting as carried_painting
 from .segmentation.edits.part_tracking import renumbered as renumbered
+from .segmentation.edits.redrawing import Drawn as Drawn
 from .segmentation.edits.redrawing import corrected_crossings as corrected_crossings
 from .segmentation.edits.redrawing import drawn_borders as drawn_borders
 from .segmentation.edits.redrawing import hill_of as hill_of

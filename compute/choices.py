@@ -9,7 +9,7 @@ MODES = (NESTED, FEATURES)
 # analyzed, or each that is no detail by itself.
 SHELLS = ("bridged", "largest", "separate")
 # Degrees of the finite elements; by the size of the mesh if "auto".
-ORDERS = ("auto", 1, 2, 3)
+ORDERS: tuple[str | int, ...] = ("auto", 1, 2, 3)
 # How functions behave at open edges: they meet them at a right angle, or are zero there.
 BOUNDARIES = ("neumann", "dirichlet")
 # Functions that the engine itself can be asked for by name; otherwise the number of an eigenfunction, or own values.

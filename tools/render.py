@@ -12,7 +12,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
-from eigenparts.operators.blender.known_values import elements_of, mesh_of, present
+from eigenparts.operators.blender.known_values import elements_of, mesh_of, present, set_input
 
 # (height, width, 4) RGBA, the lowest row first, or parts of it.
 Pixels = NDArray[np.float32]
@@ -47,10 +47,6 @@ class _Cycles(Protocol):
     max_bounces: int
     use_denoising: bool
     denoising_prefilter: Literal["NONE", "FAST", "ACCURATE"]
-
-
-class _Valued(Protocol):
-    default_value: float | tuple[float, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,11 +186,6 @@ def _glowing(attribute: str) -> bpy.types.Material:
     links.new(colour.outputs["Color"], shine.inputs["Color"])
     links.new(shine.outputs["Emission"], nodes["Material Output"].inputs["Surface"])
     return material
-
-
-def set_input(node: bpy.types.Node, name: str, value: float | tuple[float, ...]) -> None:
-    """Set the value of an input of a node."""
-    cast(_Valued, node.inputs[name]).default_value = value
 
 
 def _attribute_colour(nodes: bpy.types.Nodes, attribute: str) -> bpy.types.Node:

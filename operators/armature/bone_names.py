@@ -3,6 +3,7 @@
 from collections import Counter
 
 import numpy as np
+from numpy.typing import NDArray
 
 ROOT = "Root"
 SUFFIXES = {1: ".L", -1: ".R", 0: ""}
@@ -16,8 +17,8 @@ LONGEST_BASE = 50
 
 
 def name_bones(
-    parent: np.ndarray,
-    part: np.ndarray,
+    parent: NDArray[np.int64],
+    part: NDArray[np.int64],
     names: dict[int, str],
     pairing: dict[int, tuple[int, int]],
     taken: set[str],
@@ -52,7 +53,7 @@ def name_bones(
     return given
 
 
-def _goals(parent: np.ndarray, part: np.ndarray) -> list[int]:
+def _goals(parent: NDArray[np.int64], part: NDArray[np.int64]) -> list[int]:
     """Return for each bone that only carries another part the number of that part, -1 for all others."""
     goals = []
     for joint in range(len(parent)):

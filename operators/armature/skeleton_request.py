@@ -8,8 +8,12 @@ from functools import partial
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import skeleton_settings
 from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
 from ..jobs.recent_results import Recent, key_of
@@ -26,7 +30,8 @@ from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 # How many shapes are remembered by their symmetry.
 RECENT_SYMMETRIES = 8
-_recent_partners = Recent(RECENT_SYMMETRIES)
+# A tuple of one: that a shape has no symmetry is remembered, too.
+_recent_partners: Recent[tuple[NDArray[np.int64] | None]] = Recent(RECENT_SYMMETRIES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +50,7 @@ class NamedSkeleton:
     """
 
     skeleton: compute.Skeleton
-    weights: np.ndarray | None
+    weights: NDArray[np.float64] | None
     pairing: dict[int, tuple[int, int]]
     warnings: tuple[str, ...]
 
@@ -71,10 +76,10 @@ class SkeletonInput:
         The bones of the mesh that this one is registered to.
     """
 
-    labels: np.ndarray
+    labels: NDArray[np.int32]
     level: int
     n_pieces: int
-    poses: tuple[np.ndarray, ...] = ()
+    poses: tuple[NDArray[np.float64], ...] = ()
     pairing: dict[int, tuple[int, int]] = field(default_factory=dict)
     needs_weights: bool = False
     layout: compute.BoneLayout | None = None
@@ -87,29 +92,30 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
     def poll(cls, context: bpy.types.Context) -> bool:
         return super().poll(context) and is_analyzed_for(cls, context)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         """From the window: what the call leaves open is taken from the panel."""
         for name in self._options():
             if not self.properties.is_property_set(name):
-                setattr(self, name, getattr(context.scene.eigenparts_skeleton, name))
+                setattr(self, name, getattr(skeleton_settings(context), name))
         return super().invoke(context, event)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Show what can be changed afterwards: with other options of the analysis all would have to be done again."""
-        self.layout.use_property_split = True
+        layout = present(self.layout)
+        layout.use_property_split = True
         for name in self._options():
-            self.layout.prop(self, name)
+            layout.prop(self, name)
 
     def _options(self) -> list[str]:
         names = (*ArmatureOptions.__annotations__, *SkeletonOptions.__annotations__)
         return [name for name in names if name in self.properties.bl_rna.properties]
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., NamedSkeleton], MeshHandle]:
-        obj = context.object
-        state = read(obj.data)
+        obj = present(context.object)
+        state = read(mesh_of(obj))
         reference = state_of_reference(state)
         wanted = SkeletonInput(
-            labels=read_labels(obj.data),
+            labels=read_labels(mesh_of(obj)),
             level=state.level,
             n_pieces=self.bones_in_limbs,
             poses=_other_poses(context),
@@ -123,9 +129,9 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
         """Whether the mesh is to be bound to the bones with weights of ours."""
         return False
 
-    def finish(self, context: bpy.types.Context, handle: MeshHandle, laid: NamedSkeleton) -> set[str]:
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, laid: NamedSkeleton) -> Outcome:
         obj = handle.find_object_in_view(context)
-        mesh = obj.data
+        mesh = mesh_of(obj)
         with all_or_nothing(mesh), nothing_left_behind(context), bound_or_not(obj):
             sides, layout = part_sides.packed_sides(laid.pairing), bone_layout.packed_layout(laid.skeleton.layout)
             remember(mesh, {**sides, **layout})
@@ -143,12 +149,12 @@ def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
     """Return the warning about a registered mesh whose reference has no bones that it could be given."""
     reference = reference_of(read(mesh))
     # An object that was deleted lives on where others refer to it, but nothing can be created for it.
-    if reference is None or not reference.users_scene or read(reference.data).bone_layout is not None:
+    if reference is None or not reference.users_scene or read(mesh_of(reference)).bone_layout is not None:
         return []
     return [bone_layout.NO_BONES.format(reference.name)]
 
 
-def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: Callable[[float, str], None]) -> NamedSkeleton:
+def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: compute.Progress) -> NamedSkeleton:
     """Run the engine; knows nothing of Blender, so any thread may do it."""
 
     def of_analysis(fraction: float, text: str) -> None:
@@ -182,7 +188,7 @@ def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: Callable[[f
     )
 
 
-def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarray | None:
+def _recall_partner(key: str, find: Callable[[], NDArray[np.int64] | None]) -> NDArray[np.int64] | None:
     """Return which parts mirror which, as it was found before if that is known: a bent pose takes seconds."""
     kept = _recent_partners.get(key)
     if kept is None:
@@ -197,18 +203,18 @@ def part_names(mesh: bpy.types.Mesh, skeleton: compute.Skeleton) -> dict[int, st
     return {part: parts.name_of(part) for part in np.unique(skeleton.part).tolist()}
 
 
-def _pairing(skeleton: compute.Skeleton, partner: np.ndarray | None) -> dict[int, tuple[int, int]]:
+def _pairing(skeleton: compute.Skeleton, partner: NDArray[np.int64] | None) -> dict[int, tuple[int, int]]:
     if partner is None:
         return {}
     side = compute.sides(skeleton, partner)
     return {part: (min(part, int(partner[part])), int(side[part])) for part in np.flatnonzero(side).tolist()}
 
 
-def _other_poses(context: bpy.types.Context) -> tuple[np.ndarray, ...]:
+def _other_poses(context: bpy.types.Context) -> tuple[NDArray[np.float64], ...]:
     """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
     others = [obj for obj in context.selected_objects if obj is not context.object and obj.type == "MESH"]
-    mesh = context.object.data
-    meshes = [obj.data for obj in others if not obj.data.is_editmode and _share_faces(obj.data, mesh)]
+    mesh = mesh_of(context.object)
+    meshes = [mesh_of(obj) for obj in others if not mesh_of(obj).is_editmode and _share_faces(mesh_of(obj), mesh)]
     return tuple(mesh_arrays.read_mesh(other).vertices for other in meshes)
 
 

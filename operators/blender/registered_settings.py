@@ -3,7 +3,8 @@
 Blender finds them by name only, so nothing else knows their types. The rooms that register them come later.
 """
 
-# Not evaluated: ``typing`` keeps every ``Rows[...]`` for ever, and with it this module and Blender, which then never ends.
+# Not evaluated: ``typing`` keeps every ``Rows[...]`` for ever, and with it this module and Blender, which then never
+# ends.
 from __future__ import annotations
 
 from collections.abc import Iterator

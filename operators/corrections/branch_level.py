@@ -1,26 +1,26 @@
 """Operator: give the inside of one part a level of its own."""
 
 import bpy
-from bpy.props import BoolProperty, IntProperty
 
 from ... import compute
+from ..blender.typed_properties import BoolProperty, IntProperty, TypedProperties
 from ..mesh_state.state import MeshState
 from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 
 
-class EIGENPARTS_OT_set_branch_level(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_set_branch_level(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Divide one part more or less finely than the rest: inside it, another level counts"""
 
     bl_idname = "eigenparts.set_branch_level"
     bl_label = "Set Level of Part"
 
-    part: IntProperty(
+    part: int = IntProperty(
         name="Part", description="Number of the part that is divided by itself; the active one if not given", min=0
     )
-    level: IntProperty(name="Level", description="Level that counts inside the part")
-    reset: BoolProperty(name="Reset", description="Let the level of the mesh count again", options={"SKIP_SAVE"})
+    level: int = IntProperty(name="Level", description="Level that counts inside the part")
+    reset: bool = BoolProperty(name="Reset", description="Let the level of the mesh count again", options={"SKIP_SAVE"})
 
     def fill_in(self, state: MeshState) -> None:
         """Begin with the level that the mesh shows."""

@@ -7,15 +7,18 @@ from typing import Any
 import bpy
 
 from ... import compute
+from ..blender.known_values import mesh_of
+from ..blender.mixins import OperatorMixin
+from ..blender.outcome import Outcome
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState, is_analyzed_for, read
 from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
-from ..parts.select import use_active_part
+from ..parts.select import PART_PROPERTY, use_active_part
 
 BODY_IS_WHAT_IS_LEFT = "The body is what the parts leave; change the parts next to it instead."
 
 
-class CorrectsParts:
+class CorrectsParts(OperatorMixin):
     """Corrects the parts of the active mesh; operators give ``correct``."""
 
     bl_options = {"REGISTER", "UNDO"}
@@ -24,9 +27,9 @@ class CorrectsParts:
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
-            state = read(context.object.data)
+            state = read(mesh_of(context.object))
             corrected_analysis.refuse_uncorrectable(state)
             self.fill_in(state)
             self.correct(state)
@@ -35,7 +38,7 @@ class CorrectsParts:
 
     def fill_in(self, state: MeshState) -> None:
         """Set what the call leaves open."""
-        if "part" in self.properties.bl_rna.properties:
+        if PART_PROPERTY in self.properties.bl_rna.properties:
             use_active_part(self, state.mesh)
 
     def correct(self, state: MeshState) -> None:

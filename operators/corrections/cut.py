@@ -2,9 +2,12 @@
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import EnumProperty, TypedProperties
 from ..mesh_data.custom_normals import normals_kept
 from ..mesh_data.mesh_cut import cut_mesh
 from ..mesh_state import analysis_writer, corrected_analysis, registration_record
@@ -20,14 +23,14 @@ from . import paint
 NOTABLE_CHANGE = 0.05
 
 
-class EIGENPARTS_OT_cut(bpy.types.Operator):
+class EIGENPARTS_OT_cut(TypedProperties, bpy.types.Operator):
     """Make the borders of the parts run along edges"""
 
     bl_idname = "eigenparts.cut"
     bl_label = "Cut Borders"
     bl_options = {"REGISTER", "UNDO"}
 
-    method: EnumProperty(
+    method: str = EnumProperty(
         name="Method",
         description="How edges come to lie on the borders",
         items=[
@@ -40,15 +43,15 @@ class EIGENPARTS_OT_cut(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
-            mesh = context.object.data
+            mesh = mesh_of(context.object)
             state, n_before = read(mesh), len(mesh.polygons)
             registration_record.refuse_registered(state.registration)
             shares = state.summary.shares
             with all_or_nothing(mesh), faces_or_nothing(mesh):
                 if self.method == "INSERT":
-                    insert_borders(context.object, state)
+                    insert_borders(present(context.object), state)
                 else:
                     move_borders(state)
             if self.method == "INSERT":
@@ -67,7 +70,7 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     Refusal
         If others use the mesh too, or it cannot be cut; nothing is changed then.
     """
-    mesh = obj.data
+    mesh = mesh_of(obj)
     _refuse_shared(obj)
     output_registry.refuse_foreign_results(state)
     level, mode, shells = state.level, state.mode, state.shells
@@ -102,7 +105,7 @@ def move_borders(state: MeshState) -> None:
     _show(state.mesh, arcs, level, mode, state.shells)
 
 
-def _show(mesh: bpy.types.Mesh, arcs: list[np.ndarray], level: int, mode: str, shells: str) -> None:
+def _show(mesh: bpy.types.Mesh, arcs: list[NDArray[np.int64]], level: int, mode: str, shells: str) -> None:
     """Store new arcs of the faces, and divide the mesh as before."""
     graph = AnalyzedFaces(mesh, shells).graph
     analysis_writer.store_branches(mesh, compute.connected_branches([arc[graph.stands_for] for arc in arcs], graph))
@@ -125,7 +128,7 @@ def _tell_change(operator: bpy.types.Operator, state: MeshState, before: dict[in
 
 
 def _refuse_shared(obj: bpy.types.Object) -> None:
-    n_users = obj.data.users - obj.data.use_fake_user
+    n_users = mesh_of(obj).users - mesh_of(obj).use_fake_user
     if n_users > 1:
         raise Refusal(f"The mesh is used {n_users} times; make it single-user first, so that only this object is cut.")
     if any(modifier.type == "MULTIRES" for modifier in obj.modifiers):

@@ -1,9 +1,10 @@
 """Operator: make one part of two that touch."""
 
 import bpy
-from bpy.props import IntProperty
 
 from ... import compute
+from ..blender.registered_settings import mesh_settings
+from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
 from ..messages.user_errors import Refusal
@@ -11,14 +12,14 @@ from ..outputs import part_writer
 from .correction_request import CorrectsParts, new_item, refuse_absent
 
 
-class EIGENPARTS_OT_merge_parts(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_merge_parts(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Join a part to another one that it touches, at every level that has both"""
 
     bl_idname = "eigenparts.merge_parts"
     bl_label = "Merge Parts"
 
-    part: IntProperty(name="Part", description="Number of the part that goes; the active one if not given", min=0)
-    into: IntProperty(
+    part: int = IntProperty(name="Part", description="Number of the part that goes; the active one if not given", min=0)
+    into: int = IntProperty(
         name="Into",
         description="Number of the part that it joins, 0 for the body; the one it grows out of if not given",
         min=0,
@@ -56,7 +57,7 @@ def merge_parts(state: MeshState, part: int, into: int) -> None:
 def whole_of(mesh: bpy.types.Mesh, part: int) -> int:
     """Return the part that a part grows out of, as the list shows it."""
     path: dict[int, int] = {}
-    for row in mesh.eigenparts.rows:
+    for row in mesh_settings(mesh).rows:
         path[row.depth] = row.part
         if row.part == part:
             return path.get(row.depth - 1, 0)

@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
 
 from ... import compute
+from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
 from ..messages.user_errors import Refusal
@@ -13,16 +13,16 @@ from ..outputs import part_writer
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 
 
-class EIGENPARTS_OT_move_border(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_move_border(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Move the border of a part along the field, outward or inward"""
 
     bl_idname = "eigenparts.move_border"
     bl_label = "Move Border"
 
-    part: IntProperty(
+    part: int = IntProperty(
         name="Part", description="Number of the part whose border is moved; the active one if not given", min=0
     )
-    offset: FloatProperty(
+    offset: float = FloatProperty(
         name="Offset",
         description="How far the border is moved from where it was found, as a fraction of the field's range; the part"
         " grows with it",

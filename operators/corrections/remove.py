@@ -2,22 +2,22 @@
 
 import bpy
 import numpy as np
-from bpy.props import IntProperty
 
 from ... import compute
+from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_state.state import MeshState
 from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import CorrectsParts
 
 
-class EIGENPARTS_OT_remove_correction(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_remove_correction(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Take this correction back; the others stay"""
 
     bl_idname = "eigenparts.remove_correction"
     bl_label = "Remove Correction"
 
-    index: IntProperty(name="Correction", description="Its place in the list, from 0", min=0)
+    index: int = IntProperty(name="Correction", description="Its place in the list, from 0", min=0)
 
     def correct(self, state: MeshState) -> None:
         items = state.corrections

@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
 
 from ... import compute
+from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
 from ..mesh_data.mesh_arrays import read_own_integers
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
@@ -15,14 +15,16 @@ from ..outputs.division import PART
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 
 
-class EIGENPARTS_OT_split_part(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_split_part(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Divide a part across, where no feature does: what lies beyond the new border becomes a part"""
 
     bl_idname = "eigenparts.split_part"
     bl_label = "Split Part"
 
-    part: IntProperty(name="Part", description="Number of the part that is divided; the active one if not given", min=0)
-    position: FloatProperty(
+    part: int = IntProperty(
+        name="Part", description="Number of the part that is divided; the active one if not given", min=0
+    )
+    position: float = FloatProperty(
         name="Position",
         description="Where the new border lies: 0 at the old one, 1 at the tip",
         default=0.5,

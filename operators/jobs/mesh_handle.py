@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 
+from ..blender.known_values import mesh_of, present
 from ..mesh_data import mesh_arrays
 from ..messages.user_errors import Refusal
 
@@ -35,7 +36,7 @@ class MeshHandle:
     @classmethod
     def of(cls, obj: bpy.types.Object) -> MeshHandle:
         """Handle of a mesh object as it is now."""
-        return cls(obj.session_uid, obj.data.session_uid, mesh_arrays.fingerprint(obj.data))
+        return cls(obj.session_uid, mesh_of(obj).session_uid, mesh_arrays.fingerprint(mesh_of(obj)))
 
     def find_mesh(self) -> bpy.types.Mesh:
         """Return the mesh, if it is still as it was.
@@ -77,7 +78,7 @@ class MeshHandle:
             If the mesh cannot be used any more, or no object with it is in the view layer.
         """
         mesh = self.find_mesh()
-        users = [obj for obj in context.view_layer.objects if obj.data == mesh]
+        users = [obj for obj in present(context.view_layer).objects if obj.data == mesh]
         if not users:
             raise Refusal(NOT_IN_VIEW)
         return context.object if context.object in users else users[0]

@@ -1,7 +1,7 @@
 """The values of attributes of all kinds as arrays, however Blender keeps them."""
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import bpy
 import numpy as np
@@ -35,6 +35,11 @@ STORAGES = {
     "FLOAT_COLOR": Storage("color", 4, np.float32, True),
     "BYTE_COLOR": Storage("color", 4, np.float32, True),
 }
+
+
+def kind_of(attribute: bpy.types.Attribute) -> tuple[AttributeType, Domain]:
+    """Return the type and the domain of an attribute whose values can be stored; the stubs know more of both."""
+    return cast(AttributeType, attribute.data_type), cast(Domain, attribute.domain)
 
 
 def read_attribute(attribute: bpy.types.Attribute) -> Values:

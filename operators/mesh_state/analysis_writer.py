@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import bpy
-import numpy as np
 
 from ... import compute
+from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, face_areas, fingerprint, write_attributes
 from ..messages.user_errors import Refusal
 from . import corrections, function_hints
@@ -87,7 +87,7 @@ def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
 
 def _kept_corrections(
     earlier: MeshState, part_tree: compute.PartTree, has_same_parts: bool
-) -> tuple[tuple[compute.Correction, ...], dict[OwnAttribute, np.ndarray | None], tuple[str, ...]]:
+) -> tuple[tuple[compute.Correction, ...], dict[OwnAttribute, Values | None], tuple[str, ...]]:
     """Return the earlier corrections with the numbers that their parts have now, faces painted anew, and warnings."""
     items = earlier.corrections
     if not items or has_same_parts:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..messages.user_errors import Refusal
@@ -27,7 +28,7 @@ def corrected(state: MeshState) -> StoredAnalysis:
 
 
 def with_items(
-    state: MeshState, items: tuple[compute.Correction, ...], painted: np.ndarray | None = None
+    state: MeshState, items: tuple[compute.Correction, ...], painted: NDArray[np.int64] | None = None
 ) -> StoredAnalysis:
     """Return the analysis of a mesh with other corrections; nothing is written.
 
@@ -50,7 +51,7 @@ def crossings(state: MeshState, source: BorderSource) -> tuple[compute.EdgeProfi
     level, mode = state.level, state.mode
     corrections = analysis.corrections or compute.Corrections()
     labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=corrections)
-    drawn = ()
+    drawn: tuple[compute.Drawn, ...] = ()
     if compute.needs_faces(corrections.items):
         relief = state.faces.relief
         try:
@@ -63,7 +64,7 @@ def crossings(state: MeshState, source: BorderSource) -> tuple[compute.EdgeProfi
     return compute.corrected_crossings(source.profile, whole, cuts, drawn, joined)
 
 
-def peak_within(state: MeshState, item: compute.Correction, faces: np.ndarray) -> float:
+def peak_within(state: MeshState, item: compute.Correction, faces: NDArray[np.bool_]) -> float:
     """Return how far some faces (F,) rise above the border of a part, as a fraction of the field's range.
 
     Raises

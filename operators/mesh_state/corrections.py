@@ -8,8 +8,10 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers
 from .schema import CORRECTIONS, PAINTED, PIECE, REDRAWN, TREE
 from .serialization import UNREADABLE, packed_array, unpacked_array
@@ -24,7 +26,7 @@ COLUMNS = ("kind", "part", "other", "value", "level", "mode")
 
 def unpacked_items(stored: Any) -> tuple[compute.Correction, ...]:
     """Return the corrections in a state, as far as they make sense; cheap enough for every redraw."""
-    group = stored.get(CORRECTIONS) if hasattr(stored, "to_dict") else None
+    group: Any = stored.get(CORRECTIONS) if hasattr(stored, "to_dict") else None
     if not hasattr(group, "to_dict"):
         return ()
     rows = [group[name] for name in sorted(filter(str.isdecimal, group.keys()), key=int)]
@@ -39,21 +41,21 @@ def packed_items(items: tuple[compute.Correction, ...]) -> dict[str, Any]:
     return {CORRECTIONS: rows}
 
 
-def read_painted(mesh: bpy.types.Mesh) -> np.ndarray:
+def read_painted(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
     """Return the (F,) int64 part each face was painted with, -1 elsewhere."""
     if PAINTED.name not in own_names(mesh) or PAINTED.name not in mesh.attributes:
         return np.full(len(mesh.polygons), -1)
     return read_own_integers(mesh, PAINTED).astype(np.int64) - 1
 
 
-def painted_attribute(painted: np.ndarray) -> dict[OwnAttribute, np.ndarray | None]:
+def painted_attribute(painted: NDArray[np.int64]) -> dict[OwnAttribute, Values | None]:
     """Return the part of each painted face as an attribute; None where no face is painted."""
     return {PAINTED: (painted + 1).astype(np.int32) if (painted >= 0).any() else None}
 
 
 def redrawn_attribute(
     part_tree: compute.PartTree, corrections: compute.Corrections
-) -> dict[OwnAttribute, np.ndarray | None]:
+) -> dict[OwnAttribute, Values | None]:
     """Return the branch of each face as corrections divide them; None where they divide no face."""
     return {PIECE: part_tree.branches[0].of_face if compute.needs_faces(corrections.items) else None}
 

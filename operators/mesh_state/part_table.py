@@ -6,12 +6,13 @@ never changes by itself: "Part 2.1" is the first part that was found in "Part 2"
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from .palette import colours_of_labels
@@ -53,7 +54,7 @@ class PartTable:
             part, suffix = parent, f".{number}{suffix}"
         return f"Part {part}"
 
-    def colours_of(self, n_labels: int) -> np.ndarray:
+    def colours_of(self, n_labels: int) -> NDArray[np.float32]:
         """Return (n_labels, 4) float32 linear RGBA, row 0 the body."""
         table = colours_of_labels(n_labels)
         for part, colour in self.colours.items():
@@ -91,7 +92,7 @@ def number_parts(table: PartTable, parts: compute.Parts) -> PartTable:
 
 def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str, Any]:
     """Return a table as groups of the state, only those that are not as they were before if that is given."""
-    columns: dict[str, dict[int, Any]] = {
+    columns: dict[str, Mapping[int, Any]] = {
         PART_NUMBERS: table.places,
         PART_NAMES: table.names,
         PART_COLOURS: table.colours,

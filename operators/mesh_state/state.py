@@ -13,8 +13,10 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of
 from ..mesh_data.mesh_arrays import fingerprint
 from ..messages.user_errors import Refusal
 from . import (
@@ -169,7 +171,7 @@ class MeshState:
         return corrections.unpacked_items(self.stored)
 
     @cached_property
-    def painted(self) -> np.ndarray:
+    def painted(self) -> NDArray[np.int64]:
         """The (F,) int64 part each face was painted with, -1 elsewhere."""
         return corrections.read_painted(self.mesh)
 
@@ -242,17 +244,17 @@ def replace(mesh: bpy.types.Mesh, values: dict[str, Any]) -> None:
 
 def forget(mesh: bpy.types.Mesh) -> None:
     """Remove the analysis; the attributes stay."""
-    if STATE in mesh:
+    if is_analyzed(mesh):
         del mesh[STATE]
 
 
 def is_analyzed(mesh: bpy.types.Mesh) -> bool:
     """Whether the mesh carries an analysis of any version."""
-    return STATE in mesh
+    return mesh.get(STATE) is not None
 
 
 def is_analyzed_for(operator: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     """Whether the active mesh carries an analysis; if not, the tooltip says what to do."""
-    if not is_analyzed(context.object.data):
+    if not is_analyzed(mesh_of(context.object)):
         operator.poll_message_set(schema.ABSENT)
-    return is_analyzed(context.object.data)
+    return is_analyzed(mesh_of(context.object))

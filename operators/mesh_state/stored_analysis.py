@@ -8,8 +8,10 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, read_edges, read_own_floats, read_own_integers
 from ..messages.user_errors import Refusal
 from .schema import (
@@ -60,7 +62,7 @@ class BorderSource:
     """
 
     profile: compute.EdgeProfile
-    vertex_heights: np.ndarray
+    vertex_heights: NDArray[np.float64]
 
 
 def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
@@ -86,19 +88,19 @@ def packed_source(source: BorderSource) -> dict[str, Any]:
     return {INSIDE_EDGES: source.profile.heights[:, 1:-1].shape[1]}
 
 
-def branch_attributes(branches: tuple[compute.Branches, ...]) -> dict[OwnAttribute, np.ndarray | None]:
+def branch_attributes(branches: tuple[compute.Branches, ...]) -> dict[OwnAttribute, Values | None]:
     """Return the branch of each face, for each tree that there can be; None for one that is not there."""
     of_faces = [pieces.of_face for pieces in branches]
     return dict(zip_longest(BRANCHES, of_faces))
 
 
-def source_attributes(source: BorderSource) -> dict[OwnAttribute, np.ndarray | None]:
+def source_attributes(source: BorderSource) -> dict[OwnAttribute, Values | None]:
     """Return the attributes that borders are cut from; None for those of a tree that is not there."""
     inside = np.nan_to_num(source.profile.heights[:, 1:-1])
     return {
         **dict(zip_longest(ARCS, source.profile.arcs)),
-        HEIGHT: np.float32(source.vertex_heights),
-        EDGE_HEIGHTS: np.float32(np.pad(inside, ((0, 0), (0, 2 - inside.shape[1])))),
+        HEIGHT: source.vertex_heights.astype(np.float32),
+        EDGE_HEIGHTS: np.pad(inside, ((0, 0), (0, 2 - inside.shape[1]))).astype(np.float32),
     }
 
 
@@ -113,7 +115,7 @@ def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAn
     return StoredAnalysis(part_tree, shells)
 
 
-def unpacked_branches(group: Any, of_faces: list[np.ndarray]) -> tuple[compute.Branches, ...]:
+def unpacked_branches(group: Any, of_faces: list[NDArray[np.int32]]) -> tuple[compute.Branches, ...]:
     """Return the branches in a group, with those of the faces for each tree."""
     return tuple(
         compute.Branches(of_face=of_face, **unpacked(group[PIECES_OF_TREE.format(i)], compute.Branches))
@@ -151,7 +153,7 @@ def has_trees(group: Any, hierarchy: compute.Hierarchy) -> bool:
         return False
 
 
-def vertex_heights(mesh: bpy.types.Mesh) -> np.ndarray:
+def vertex_heights(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
     """Return the (V,) values of the field on the vertices."""
     return read_own_floats(mesh, HEIGHT).astype(np.float64)
 
@@ -168,7 +170,7 @@ def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
     )
 
 
-def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> np.ndarray:
+def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> NDArray[np.float64]:
     """Return the (A,) values of the field at which arcs close; only a root and whole shells close nowhere."""
     heights = unpacked_array(group[CLOSING_HEIGHTS.format(number)], "float64")
     if heights.shape != tree.saddle.shape or not np.isfinite(heights[tree.saddle >= 0]).all():

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 
@@ -74,6 +77,6 @@ def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
     )
 
 
-def lie_within(indices: np.ndarray, start: float, stop: float) -> bool:
+def lie_within(indices: NDArray[np.integer[Any]] | NDArray[np.floating[Any]], start: float, stop: float) -> bool:
     """Whether all indices are at least ``start`` and below ``stop``."""
     return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)

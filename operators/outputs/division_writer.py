@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from ... import compute
+from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, write_attributes
 from ..mesh_state import schema
 from ..mesh_state.part_table import PartTable, number_parts, packed_table
@@ -24,7 +23,7 @@ def write_parts(
     parts: PartTable,
     changes: dict[str, Any],
     *,
-    attributes: dict[OwnAttribute, np.ndarray | None] | None = None,
+    attributes: dict[OwnAttribute, Values | None] | None = None,
     items: tuple[compute.Correction, ...] | None = None,
 ) -> None:
     """Write parts to an analyzed mesh, and everything that follows them.

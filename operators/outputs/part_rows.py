@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ... import compute
+from ..blender.registered_settings import mesh_settings
 from ..mesh_state.part_table import PartTable, in_tree_order
 
 
@@ -12,7 +13,7 @@ def list_parts(mesh: bpy.types.Mesh, parts: compute.Parts) -> None:
     """Fill the list of parts."""
     if not hasattr(mesh, "eigenparts"):
         return
-    rows = mesh.eigenparts.rows
+    rows = mesh_settings(mesh).rows
     rows.clear()
     whole = parts.area.sum()
     for place, depth in in_tree_order(parts):
@@ -27,7 +28,7 @@ def list_corrections(
     """Fill the list of corrections; those that rest do nothing at the level that is shown."""
     if not hasattr(mesh, "eigenparts"):
         return
-    rows = mesh.eigenparts.correction_rows
+    rows = mesh_settings(mesh).correction_rows
     rows.clear()
     for place, item in enumerate(items):
         row = rows.add()

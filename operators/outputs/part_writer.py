@@ -5,10 +5,14 @@ Each call reads once what the mesh remembers, computes, and then writes all or n
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import present
 from ..mesh_data.mesh_arrays import read_own_integers, refuse_foreign
 from ..mesh_state import corrected_analysis, registration_record, schema
 from ..mesh_state.corrections import packed_items, packed_redrawn, painted_attribute, redrawn_attribute
@@ -19,11 +23,14 @@ from ..messages.user_errors import Refusal
 from . import output_registry
 from .division import PART, division_of
 from .division_writer import write_parts
+from .level_choice import LevelChoice
 from .ownership import mend
 from .rollback import all_or_nothing
 
 
-def segment_mesh(mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: float) -> compute.BranchLabels:
+def segment_mesh(
+    mesh: bpy.types.Mesh, *, mode: str | None = None, **choice: Unpack[LevelChoice]
+) -> compute.BranchLabels:
     """Divide an analyzed mesh into parts and write them.
 
     Parameters
@@ -53,7 +60,7 @@ def show_mode(mesh: bpy.types.Mesh, mode: str) -> compute.BranchLabels:
     return segment(state, mode=mode, level=state.shown_level)
 
 
-def segment(state: MeshState, *, mode: str | None = None, **choice: float) -> compute.BranchLabels:
+def segment(state: MeshState, *, mode: str | None = None, **choice: Unpack[LevelChoice]) -> compute.BranchLabels:
     """Divide an analyzed mesh into parts and write them; see ``segment_mesh``."""
     output_registry.refuse_foreign_results(state)
     analysis = corrected_analysis.corrected(state)
@@ -61,8 +68,9 @@ def segment(state: MeshState, *, mode: str | None = None, **choice: float) -> co
     labels = compute.label_branches(analysis.part_tree, mode=mode, corrections=analysis.corrections, **choice)
     attributes, changes = {}, {schema.MODE: mode, schema.REGISTRATION: None}
     if compute.needs_faces(state.corrections) and state.redrawn is None:
-        attributes = redrawn_attribute(analysis.part_tree, analysis.corrections)
-        changes |= packed_redrawn(analysis.part_tree, analysis.corrections)
+        redrawn = analysis.part_tree, present(analysis.corrections)
+        attributes = redrawn_attribute(*redrawn)
+        changes |= packed_redrawn(*redrawn)
     with all_or_nothing(state.mesh):
         write_parts(state, labels, analysis.part_tree, state.own_parts, changes, attributes=attributes)
     return labels
@@ -73,7 +81,7 @@ def correct(
     items: tuple[compute.Correction, ...],
     *,
     changed: int | None = None,
-    painted: np.ndarray | None = None,
+    painted: NDArray[np.int64] | None = None,
 ) -> None:
     """Give an analyzed mesh other corrections, and show its parts at the level that it shows.
 
@@ -99,9 +107,9 @@ def correct(
     labels = compute.label_branches(analysis.part_tree, level=level, mode=mode, corrections=analysis.corrections)
     if changed is not None and changed in labels.resting:
         raise Refusal(corrected_analysis.NO_EFFECT)
-    attributes = {**painted_attribute(painted), **redrawn_attribute(analysis.part_tree, analysis.corrections)}
-    redrawn = packed_redrawn(analysis.part_tree, analysis.corrections)
-    changes = {schema.MODE: mode, **packed_items(items), **redrawn}
+    redrawn = analysis.part_tree, present(analysis.corrections)
+    attributes = {**painted_attribute(painted), **redrawn_attribute(*redrawn)}
+    changes = {schema.MODE: mode, **packed_items(items), **packed_redrawn(*redrawn)}
     with all_or_nothing(state.mesh):
         write_parts(state, labels, analysis.part_tree, state.parts, changes, attributes=attributes, items=items)
 
@@ -172,7 +180,7 @@ def recolour(mesh: bpy.types.Mesh) -> None:
     mesh.update()
 
 
-def read_labels(mesh: bpy.types.Mesh) -> np.ndarray:
+def read_labels(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the (F,) int32 part of each face; raises a Refusal if they are gone or cannot be parts."""
     labels = read_own_integers(mesh, PART)
     if not lie_within(labels, 0, schema.MOST_LABELS):

@@ -27,7 +27,8 @@ def recolour_meshes() -> None:
                 part_writer.recolour(mesh)
 
 
-@persistent
+# The stubs give it no types.
+@persistent  # type: ignore[untyped-decorator]
 def _follow_undo(*_: object) -> None:
     if _is_changed:
         recolour_meshes()

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import read_mesh
@@ -34,7 +35,7 @@ def remove(mesh: bpy.types.Mesh) -> None:
     obj = _object_of(mesh)
     if obj is not None:
         _drop(obj, _own_groups(mesh).values())
-    if OWN_GROUPS in mesh:
+    if mesh.get(OWN_GROUPS) is not None:
         del mesh[OWN_GROUPS]
 
 
@@ -83,12 +84,14 @@ def _drop(obj: bpy.types.Object, names: Iterable[str]) -> None:
         obj.vertex_groups.active = obj.vertex_groups[active_name]
 
 
-def _fill_hard(groups: dict[int, bpy.types.VertexGroup], labels: np.ndarray) -> None:
+def _fill_hard(groups: dict[int, bpy.types.VertexGroup], labels: NDArray[np.int32]) -> None:
     for part, group in groups.items():
         group.add(np.flatnonzero(labels == part).tolist(), 1.0, "REPLACE")
 
 
-def _fill_softly(groups: dict[int, bpy.types.VertexGroup], parts: np.ndarray, weights: np.ndarray) -> None:
+def _fill_softly(
+    groups: dict[int, bpy.types.VertexGroup], parts: NDArray[np.int64], weights: NDArray[np.float64]
+) -> None:
     for part, column in zip(parts.tolist(), weights.T, strict=True):
         if part not in groups:
             continue
@@ -98,7 +101,9 @@ def _fill_softly(groups: dict[int, bpy.types.VertexGroup], parts: np.ndarray, we
             groups[part].add([vertex], column[vertex], "REPLACE")
 
 
-def _softened(mesh: bpy.types.Mesh, labels: np.ndarray, width: float) -> tuple[np.ndarray, np.ndarray]:
+def _softened(
+    mesh: bpy.types.Mesh, labels: NDArray[np.int32], width: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the parts (P,) and the (V, P) weights; vertices at one place get the same."""
     arrays = read_mesh(mesh)
     _, first, place = np.unique(arrays.vertices, axis=0, return_index=True, return_inverse=True)

@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import analysis_settings
 from ..jobs import background
 from ..jobs.background import BackgroundOperator
 from ..messages.user_errors import can_use_active_mesh
@@ -16,11 +18,11 @@ class AnalysisRequest(AnalysisOptions, BackgroundOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         """From the window: what the call leaves open is taken from the panel."""
         for name in AnalysisOptions.__annotations__:
             if not self.properties.is_property_set(name):
-                setattr(self, name, getattr(context.scene.eigenparts, name))
+                setattr(self, name, getattr(analysis_settings(context), name))
         return super().invoke(context, event)
 
     def analysis_settings(self) -> AnalysisSettings:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of
+from ..jobs.recent_analyses import EngineOptions
 from ..mesh_data import mesh_arrays
 from .choice_items import ATTRIBUTE, EIGENFUNCTION, identifier, word
 
@@ -51,22 +54,22 @@ class AnalysisInput:
     name : str
         Of the object, for the user.
     arrays : MeshArrays
-    options : dict
+    options : EngineOptions
         Keyword arguments of the engine's analysis.
     """
 
     name: str
     arrays: mesh_arrays.MeshArrays
-    options: dict[str, Any]
+    options: EngineOptions
 
 
 def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:
     """Return the mesh of an object, posed if that is wanted, and the keyword arguments of the engine."""
-    options = engine_options(obj.data, settings)
+    options = engine_options(mesh_of(obj), settings)
     return AnalysisInput(obj.name, mesh_arrays.read_object(context, obj, settings.use_modifiers), options)
 
 
-def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> dict[str, Any]:
+def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> EngineOptions:
     """Return the keyword arguments of the engine for the settings of the user."""
     return {
         "field": _field(mesh, settings),
@@ -76,7 +79,7 @@ def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> dict[str
     }
 
 
-def _field(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> Any:
+def _field(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> str | int | NDArray[np.float64]:
     if settings.field == EIGENFUNCTION:
         return settings.eigenfunction
     if settings.field == ATTRIBUTE:

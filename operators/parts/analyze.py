@@ -7,6 +7,9 @@ from functools import partial
 
 import bpy
 
+from ..blender.known_values import present
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import job_status
 from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.viewport import show_vertex_colours
@@ -23,14 +26,14 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., AnalysisResult], MeshHandle]:
-        given = mesh_segmentation.read(context, context.object, self.analysis_settings())
+        given = mesh_segmentation.read(context, present(context.object), self.analysis_settings())
         analyze = partial(mesh_segmentation.analyze, given, analysis_of=recent_analyses.analyze_and_keep)
-        return analyze, MeshHandle.of(context.object)
+        return analyze, MeshHandle.of(present(context.object))
 
-    def finish(self, context: bpy.types.Context, handle: MeshHandle, result: AnalysisResult) -> set[str]:
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, result: AnalysisResult) -> Outcome:
         segmented = mesh_segmentation.write(handle.find_mesh(), result)
         show_vertex_colours(context)
-        context.window_manager.eigenparts.problem = ""
+        job_status(context).problem = ""
         segmented.messages.report(self)
         return {"FINISHED"}
 

@@ -1,23 +1,26 @@
 """The choices of an analysis and of a division as items of lists: words of the engine, named for people."""
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, TypeVar
 
 from ... import compute
 
 Item = tuple[str, str, str]
+# A word of the engine; orders of elements are numbers, too.
+Word = TypeVar("Word", bound=str | int)
 
 
-def identifier(word: Any) -> str:
+def identifier(word: str | int) -> str:
     """Return what Blender calls a word of the engine: "NESTED" for "nested", "1" for 1."""
     return str(word).upper()
 
 
-def word(words: tuple[Any, ...], chosen: str) -> Any:
+def word(words: tuple[Word, ...], chosen: str) -> Word:
     """Return the word of the engine that Blender calls so."""
     return next(word for word in words if identifier(word) == chosen)
 
 
-def _items(words: tuple[Any, ...], texts: dict[Any, tuple[str, str]]) -> list[Item]:
+def _items(words: tuple[str | int, ...], texts: Mapping[Any, tuple[str, str]]) -> list[Item]:
     return [(identifier(word), *texts[word]) for word in words]
 
 

@@ -2,6 +2,8 @@
 
 import bpy
 
+from ..blender.known_values import mesh_of
+from ..blender.outcome import Outcome
 from ..mesh_data import mesh_arrays
 from ..mesh_data.viewport import restore_colour_types
 from ..mesh_state.state import forget, is_analyzed, read
@@ -22,8 +24,8 @@ class EIGENPARTS_OT_clear(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_use_active_mesh(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        mesh = context.object.data
+    def execute(self, context: bpy.types.Context) -> Outcome:
+        mesh = mesh_of(context.object)
         mend(mesh, output_registry.result_attributes(read(mesh).outputs))
         with all_or_nothing(mesh):
             output_registry.remove(mesh)

@@ -8,6 +8,8 @@ from functools import partial
 import bpy
 
 from ... import compute
+from ..blender.known_values import present
+from ..blender.outcome import Outcome
 from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
 from ..messages.sentences import Messages
@@ -19,10 +21,10 @@ class FreshAnalysis(AnalysisRequest):
     """Analyzes the active mesh, and hands the analysis to ``show``."""
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., compute.Analysis], MeshHandle]:
-        given = read_input(context, context.object, self.analysis_settings())
-        return partial(analyze_topology, given), MeshHandle.of(context.object)
+        given = read_input(context, present(context.object), self.analysis_settings())
+        return partial(analyze_topology, given), MeshHandle.of(present(context.object))
 
-    def finish(self, context: bpy.types.Context, handle: MeshHandle, analysis: compute.Analysis) -> set[str]:
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, analysis: compute.Analysis) -> Outcome:
         shown = self.show(context, handle.find_object(), analysis)
         Messages((shown,), analysis.warnings).report(self)
         return {"FINISHED"}
@@ -32,7 +34,7 @@ class FreshAnalysis(AnalysisRequest):
         raise NotImplementedError
 
 
-def analyze_topology(given: AnalysisInput, progress: Callable[[float, str], None]) -> compute.Analysis:
+def analyze_topology(given: AnalysisInput, progress: compute.Progress) -> compute.Analysis:
     """Return an analysis with its persistence diagram; knows nothing of Blender, so any thread may do it."""
     analysis = recent_analyses.recall(given.arrays, given.options, progress)
     # The longer part of the topology is made here, in the thread.

@@ -7,23 +7,24 @@ the result on the mesh and returns what is to be told.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of
 from ..jobs import recent_analyses
 from ..mesh_state import analysis_writer, function_hints, state
 from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import Messages
 from ..outputs import output_registry, part_writer
+from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from .analysis_settings import AnalysisInput, AnalysisSettings, read_input
-
-Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +49,7 @@ class AnalysisResult:
     description: str
     warnings: tuple[str, ...]
     seconds: float
-    polygon_of_triangle: np.ndarray
+    polygon_of_triangle: NDArray[np.int64]
     hints: tuple[compute.FunctionHint, ...] = ()
 
 
@@ -68,13 +69,13 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
     Refusal
         If something of the user's stands where results belong, or the settings do not fit the mesh.
     """
-    output_registry.refuse_foreign_results(state.read(obj.data))
+    output_registry.refuse_foreign_results(state.read(mesh_of(obj)))
     return read_input(context, obj, settings)
 
 
 def analyze(
     given: AnalysisInput,
-    progress: Progress,
+    progress: compute.Progress,
     analysis_of: Callable[..., compute.Analysis] = recent_analyses.analyze,
 ) -> AnalysisResult:
     """Run the engine; knows nothing of Blender, so any thread may do it."""
@@ -88,7 +89,7 @@ def write(
     result: AnalysisResult,
     *,
     mode: str | None = None,
-    choice: Mapping[str, float] | None = None,
+    choice: LevelChoice | None = None,
 ) -> Segmented:
     """Put an analysis on its mesh and divide it into parts; all of it is written or nothing.
 
@@ -96,7 +97,7 @@ def write(
     ----------
     mode : str, optional
         How levels are read; as the mesh was divided before if None.
-    choice : mapping, optional
+    choice : LevelChoice, optional
         One of ``level``, ``threshold`` and ``n_parts``; the default level if there is none.
     """
     with all_or_nothing(mesh):

@@ -1,9 +1,11 @@
 """Operator: divide an analyzed mesh into parts at another level."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import EnumProperty, FloatProperty, IntProperty, TypedProperties
 from ..mesh_data.viewport import show_vertex_colours
 from ..mesh_state.state import is_analyzed_for, read
 from ..messages.sentences import tell
@@ -15,14 +17,14 @@ from .choice_items import MODE_ITEMS, identifier, word
 MEASURES = {"LEVEL": "level", "N_PARTS": "n_parts", "THRESHOLD": "threshold"}
 
 
-class EIGENPARTS_OT_segment(bpy.types.Operator):
+class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
     """Divide the analyzed mesh into parts: by level, threshold or number, or at the default level"""
 
     bl_idname = "eigenparts.segment"
     bl_label = "Segment"
     bl_options = {"REGISTER", "UNDO"}
 
-    by: EnumProperty(
+    by: str = EnumProperty(
         name="By",
         description="What says how finely the mesh is divided; if not given, what is given of the following",
         items=[
@@ -33,8 +35,8 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
         ],
         options={"SKIP_SAVE"},
     )
-    level: IntProperty(name="Level", description="How many features to keep", soft_min=0, options={"SKIP_SAVE"})
-    threshold: FloatProperty(
+    level: int = IntProperty(name="Level", description="How many features to keep", soft_min=0, options={"SKIP_SAVE"})
+    threshold: float = FloatProperty(
         name="Threshold",
         description="Least height of a feature, as a fraction of the field's range",
         default=0.05,
@@ -42,10 +44,10 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
         soft_max=1,
         options={"SKIP_SAVE"},
     )
-    n_parts: IntProperty(
+    n_parts: int = IntProperty(
         name="Parts", description="How many parts, the body included", soft_min=1, options={"SKIP_SAVE"}
     )
-    mode: EnumProperty(
+    mode: str = EnumProperty(
         name="Mode",
         description="What becomes a part; if not given, as it is on the mesh",
         items=MODE_ITEMS,
@@ -57,14 +59,15 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
         return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.layout.use_property_split = True
-        self.layout.prop(self, "mode")
-        self.layout.prop(self, "by")
+        layout = present(self.layout)
+        layout.use_property_split = True
+        layout.prop(self, "mode")
+        layout.prop(self, "by")
         if self.by in MEASURES:
-            self.layout.prop(self, MEASURES[self.by])
+            layout.prop(self, MEASURES[self.by])
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        state, given = read(context.object.data), self._given()
+    def execute(self, context: bpy.types.Context) -> Outcome:
+        state, given = read(mesh_of(context.object)), self._given()
         with refusals_told(self):
             mode = word(compute.MODES, self.mode) if self.properties.is_property_set("mode") else state.mode
             labels = part_writer.segment(state, mode=mode, **{name: getattr(self, name) for name in given})

@@ -3,7 +3,10 @@
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
 from ..mesh_data.custom_normals import normals_kept
 from ..mesh_data.mesh_arrays import remove_own_attributes
 from ..mesh_state.schema import ATTRIBUTES
@@ -27,11 +30,11 @@ class EIGENPARTS_OT_separate(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self), nothing_left_behind(context):
-            pieces = separate_parts(context.object)
+            pieces = separate_parts(present(context.object))
             # A script may be about an object that this view layer has not, where nothing can be selected.
-            for piece in set(pieces).intersection(context.view_layer.objects):
+            for piece in set(pieces).intersection(present(context.view_layer).objects):
                 piece.select_set(True)
             tell(self, "INFO", f"{len(pieces)} objects.")
             return {"FINISHED"}
@@ -44,7 +47,7 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
     As when Blender separates, the object itself stays with the first part, the body if it has faces, so that whatever
     refers to it still does. The pieces keep the outputs that were chosen, and forget the analysis: it was of the whole.
     """
-    mesh, state = obj.data, read(obj.data)
+    mesh, state = mesh_of(obj), read(mesh_of(obj))
     mend(mesh, result_attributes(state.outputs))
     labels = read_labels(mesh)
     parts = np.unique(labels).tolist()
@@ -61,16 +64,16 @@ def separate_parts(obj: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def _copy(obj: bpy.types.Object, mesh: bpy.types.Mesh, name: str) -> bpy.types.Object:
-    copy = obj.copy()
+    copy = present(obj.copy())
     copy.name, copy.data = name, mesh
     for collection in obj.users_collection:
         collection.objects.link(copy)
     return copy
 
 
-def _mesh_of_part(mesh: bpy.types.Mesh, is_kept: np.ndarray, name: str) -> bpy.types.Mesh:
+def _mesh_of_part(mesh: bpy.types.Mesh, is_kept: NDArray[np.bool_], name: str) -> bpy.types.Mesh:
     """Return a copy of a mesh with some of its faces only."""
-    piece = mesh.copy()
+    piece = present(mesh.copy())
     piece.name = name
     _forget_analysis(piece)
     with normals_kept(piece):
@@ -78,10 +81,12 @@ def _mesh_of_part(mesh: bpy.types.Mesh, is_kept: np.ndarray, name: str) -> bpy.t
     return piece
 
 
-def _delete_faces(mesh: bpy.types.Mesh, is_dropped: np.ndarray) -> None:
+def _delete_faces(mesh: bpy.types.Mesh, is_dropped: NDArray[np.bool_]) -> None:
     edited = bmesh.new()
     edited.from_mesh(mesh)
-    dropped = [face for face, drops in zip(edited.faces, is_dropped.tolist(), strict=True) if drops]
+    dropped: list[bmesh.types.BMVert | bmesh.types.BMEdge | bmesh.types.BMFace] = [
+        face for face, drops in zip(edited.faces, is_dropped.tolist(), strict=True) if drops
+    ]
     bmesh.ops.delete(edited, geom=dropped, context="FACES")
     edited.to_mesh(mesh)
     edited.free()

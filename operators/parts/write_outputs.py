@@ -1,21 +1,23 @@
 """Operator: choose what the parts of a mesh are written to."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty
 
+from ..blender.known_values import mesh_of
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import EnumProperty, FloatProperty, TypedProperties
 from ..mesh_state.state import is_analyzed_for, read
 from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs import output_registry, part_writer
 
 
-class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
+class EIGENPARTS_OT_write_outputs(TypedProperties, bpy.types.Operator):
     """Choose what the parts are written to; outputs that are left out are taken back"""
 
     bl_idname = "eigenparts.write_outputs"
     bl_label = "Write Outputs"
     bl_options = {"REGISTER", "UNDO"}
 
-    outputs: EnumProperty(
+    outputs: set[str] = EnumProperty(
         name="Outputs",
         description="What the parts are written to, beside the attribute of the faces; all of it follows the level",
         items=[
@@ -25,7 +27,7 @@ class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
         options={"ENUM_FLAG"},
         default=set(output_registry.DEFAULT),
     )
-    softness: FloatProperty(
+    softness: float = FloatProperty(
         name="Softness",
         description="Width over which vertex groups pass from one part to the next; 0 for hard borders",
         subtype="DISTANCE",
@@ -36,15 +38,15 @@ class EIGENPARTS_OT_write_outputs(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        state = read(context.object.data)
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
+        state = read(mesh_of(context.object))
         self.outputs = {output.key for output in output_registry.chosen(state.outputs)}
         self.softness = state.softness
         return self.execute(context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
-            part_writer.write_outputs(context.object.data, self.outputs, self.softness)
+            part_writer.write_outputs(mesh_of(context.object), self.outputs, self.softness)
             return {"FINISHED"}
         return {"CANCELLED"}
 

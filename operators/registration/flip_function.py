@@ -1,8 +1,8 @@
 """Operator: register an object again with the other sign of one matched function."""
 
 import bpy
-from bpy.props import IntProperty
 
+from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_state.registration_record import Match
 from ..messages.user_errors import Refusal
 from .match_options import MatchOptions, remembered_options
@@ -10,7 +10,7 @@ from .mesh_registration import SHOWN_FUNCTIONS
 from .repeated_registration import RepeatedRegistration
 
 
-class EIGENPARTS_OT_flip_function(RepeatedRegistration, bpy.types.Operator):
+class EIGENPARTS_OT_flip_function(RepeatedRegistration, TypedProperties, bpy.types.Operator):
     """Registers the object again with the other sign of one of the attributes that Write Eigenfunctions makes."""
 
     bl_idname = "eigenparts.flip_function"
@@ -21,7 +21,7 @@ class EIGENPARTS_OT_flip_function(RepeatedRegistration, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    number: IntProperty(
+    number: int = IntProperty(
         name="Function",
         description="Which function of the reference, counted from the smoothest",
         default=1,

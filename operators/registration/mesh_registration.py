@@ -6,11 +6,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
 import bpy
 
+from ..blender.known_values import mesh_of, present
 from ..mesh_state import analysis_writer, registration_record
 from ..mesh_state.corrected_analysis import corrected
 from ..mesh_state.part_table import PartTable
@@ -19,6 +20,7 @@ from ..mesh_state.state import MeshState, read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
 from ..outputs import output_registry, part_writer
+from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from ..parts import mesh_segmentation
 from ..parts.analysis_settings import AnalysisInput, AnalysisSettings
@@ -62,7 +64,7 @@ def read_reference(
     settings: AnalysisSettings,
     *,
     mode: str | None = None,
-    choice: Mapping[str, float] | None = None,
+    choice: LevelChoice | None = None,
 ) -> tuple[AnalysisInput, ShownParts]:
     """Return what the analysis of a reference needs, and the parts that it is to show.
 
@@ -70,10 +72,10 @@ def read_reference(
     ----------
     mode : str, optional
         How levels are read; as the mesh shows them if None.
-    choice : mapping, optional
+    choice : LevelChoice, optional
         One of ``level``, ``threshold`` and ``n_parts``; the level that the mesh shows if there is none.
     """
-    state = read(obj.data)
+    state = read(mesh_of(obj))
     _refuse_registered(obj, state)
     mode, choice = mode or state.mode, choice or {}
     try:
@@ -88,7 +90,7 @@ def read_reference(
 def read_target(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:
     """Return what the analysis of an object needs, or say by its name why there can be none."""
     with in_name_of(obj.name):
-        refuse_unwritable(obj.data)
+        refuse_unwritable(mesh_of(obj))
         return mesh_segmentation.read(context, obj, settings)
 
 
@@ -97,7 +99,7 @@ def first_free_label(context: bpy.types.Context, reference: bpy.types.Object, ta
     labels = [
         label
         for obj, state in registered_objects(context)
-        if state.registration.reference == reference and obj not in targets
+        if present(state.registration).reference == reference and obj not in targets
         for label in state.summary.shares
     ]
     return 1 + max(labels, default=0)
@@ -111,7 +113,7 @@ def write_all(
     settings: AnalysisSettings,
 ) -> Messages:
     """Write a reference and all that were registered to it, or nothing."""
-    with all_or_nothing(obj.data, *meshes):
+    with all_or_nothing(mesh_of(obj), *meshes):
         shown = write_reference(obj, registration.reference)
         shared = shared_parts(obj, registration.reference, shown, options, settings)
         written = [
@@ -123,8 +125,10 @@ def write_all(
 
 def write_reference(obj: bpy.types.Object, reference: PreparedReference) -> Segmented:
     """Let a reference show its parts; all of them are written or nothing."""
-    output_registry.refuse_foreign_results(read(obj.data))
-    shown = mesh_segmentation.write(obj.data, reference.result, mode=reference.mode, choice={"level": reference.level})
+    output_registry.refuse_foreign_results(read(mesh_of(obj)))
+    shown = mesh_segmentation.write(
+        mesh_of(obj), reference.result, mode=reference.mode, choice={"level": reference.level}
+    )
     warnings = _in_name_of(obj.name, shown.messages.warnings)
     return Segmented(shown.labels, Messages(shown.messages.infos, warnings))
 
@@ -140,7 +144,7 @@ def shared_parts(
     return SharedParts(
         reference=obj.name,
         mode=reference.mode,
-        parts=read(obj.data).parts,
+        parts=read(mesh_of(obj)).parts,
         warnings=shown.messages.warnings,
         options=options,
         settings=settings,

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 import bpy
-from bpy.props import BoolProperty
 
+from ..blender.known_values import present
+from ..blender.typed_properties import BoolProperty, TypedProperties
 from ..jobs import background
 from ..mesh_data.selected_meshes import other_meshes
 from ..messages.user_errors import Refusal, can_use_active_mesh
@@ -16,14 +17,14 @@ from .shape_registration import Registration
 NOTHING_ELSE = "Select the meshes to register, and last the one that has the parts."
 
 
-class EIGENPARTS_OT_register_selected(RegistrationOperator, AnalysisRequest, bpy.types.Operator):
+class EIGENPARTS_OT_register_selected(RegistrationOperator, AnalysisRequest, TypedProperties, bpy.types.Operator):
     """Give all selected meshes the parts of the active one: the same numbers, names and colors"""
 
     bl_idname = "eigenparts.register_selected"
     bl_label = "Register Selected"
     bl_options = {"UNDO"}
 
-    mirrored: BoolProperty(
+    mirrored: bool = BoolProperty(
         name="Mirrored",
         description="The meshes are mirror images, such as a left hand and a right one; not needed where only the"
         " scale of an object mirrors it",
@@ -38,7 +39,7 @@ class EIGENPARTS_OT_register_selected(RegistrationOperator, AnalysisRequest, bpy
         if not targets:
             raise Refusal(NOTHING_ELSE)
         return self.start(
-            context, context.object, targets, MatchOptions(mirrored=self.mirrored), self.analysis_settings()
+            context, present(context.object), targets, MatchOptions(mirrored=self.mirrored), self.analysis_settings()
         )
 
 

@@ -8,6 +8,8 @@ from functools import partial
 
 import bpy
 
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import job_status
 from ..jobs.background import BackgroundOperator
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.viewport import show_vertex_colours
@@ -47,11 +49,11 @@ class RegistrationOperator(BackgroundOperator):
         )
         return partial(register_all, given, shown, others, options, first_free), handles
 
-    def finish(self, context: bpy.types.Context, handles: RegistrationHandles, registration: Registration) -> set[str]:
+    def finish(self, context: bpy.types.Context, handles: RegistrationHandles, registration: Registration) -> Outcome:
         reference = handles.reference.find_object(mesh_registration.NO_REFERENCE)
         meshes = [handle.find_mesh() for handle in handles.targets]
         messages = mesh_registration.write_all(reference, meshes, registration, handles.options, handles.settings)
         show_vertex_colours(context)
-        context.window_manager.eigenparts.problem = ""
+        job_status(context).problem = ""
         messages.report(self)
         return {"FINISHED"}

@@ -8,8 +8,10 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
-from bpy.props import StringProperty
 
+from ..blender.known_values import mesh_of, present
+from ..blender.registered_settings import analysis_settings
+from ..blender.typed_properties import StringProperty, TypedProperties
 from ..jobs import background
 from ..mesh_state import registration_record
 from ..mesh_state.state import read
@@ -22,25 +24,25 @@ from .shape_registration import Registration
 DAMAGED = "The registration stored on this mesh is damaged; register the selected meshes again."
 
 
-class RepeatedRegistration(RegistrationOperator):
+class RepeatedRegistration(TypedProperties, RegistrationOperator):
     """Registers one object again as before, but for what ``match_options`` says."""
 
-    object_name: StringProperty(name="Object", description="Name of the object; the active one if empty")
+    object_name: str = StringProperty(name="Object", description="Name of the object; the active one if empty")
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], RegistrationHandles]:
-        obj = context.object if not self.object_name else _mesh_object(context, self.object_name)
-        registration = read(obj.data).registration
+        obj = _mesh_object(context, self.object_name) if self.object_name else present(context.object)
+        registration = read(mesh_of(obj)).registration
         match = None if registration is None else registration.match
-        if match is None:
+        if registration is None or match is None:
             raise Refusal(registration_record.NOT_REGISTERED)
         reference = registration.reference or _mesh_object(context, match.reference)
-        if reference.name not in context.view_layer.objects:
+        if reference.name not in present(context.view_layer).objects:
             raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
-        if not _are_settings(match.settings, context.scene.eigenparts.bl_rna.properties):
+        if not _are_settings(match.settings, analysis_settings(context).bl_rna.properties):
             raise Refusal(DAMAGED)
         settings = AnalysisSettings(**{name: match.settings[name] for name in SETTINGS})
         return self.start(context, reference, [obj], self.match_options(match), settings)
@@ -50,13 +52,13 @@ class RepeatedRegistration(RegistrationOperator):
         raise NotImplementedError
 
 
-def _are_settings(stored: dict[str, Any], known: bpy.types.bpy_prop_collection) -> bool:
+def _are_settings(stored: dict[str, Any], known: "bpy.types.bpy_prop_collection[bpy.types.Property]") -> bool:
     """Whether what is stored can be the options of an analysis."""
     return all(name in stored and _can_be(stored[name], known[name]) for name in SETTINGS)
 
 
 def _can_be(value: Any, option: bpy.types.Property) -> bool:
-    if option.type == "ENUM":
+    if isinstance(option, bpy.types.EnumProperty):
         return isinstance(value, str) and value in option.enum_items
     if option.type == "STRING":
         return isinstance(value, str)
@@ -65,7 +67,7 @@ def _can_be(value: Any, option: bpy.types.Property) -> bool:
 
 
 def _mesh_object(context: bpy.types.Context, name: str) -> bpy.types.Object:
-    obj = context.view_layer.objects.get(name)
+    obj = present(context.view_layer).objects.get(name)
     if obj is None or obj.type != "MESH":
         raise Refusal(f'There is no mesh object "{name}" here any more; register the selected meshes again.')
     return obj

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_state.stored_analysis import StoredAnalysis
 from ..messages.user_errors import Refusal, in_name_of
+from ..outputs.level_choice import LevelChoice
 from ..parts.analysis_settings import AnalysisInput
 from ..parts.mesh_segmentation import AnalysisResult, result_of
 from .match_options import MatchOptions
@@ -21,7 +22,7 @@ CORRECTED_BEFORE = (
     "{} was corrected by hand, and then edited, cut or analyzed with other settings; "
     "analyze it with these settings first, so that all get its corrections."
 )
-Progress = Callable[[float, str], None]
+
 # Of shapes that are kept: points, 1 kB of memory each. Of matchings: how many.
 RECENT_POINTS = 100_000
 RECENT_MATCHINGS = 32
@@ -29,8 +30,8 @@ RECENT_MATCHINGS = 32
 ANALYSIS_SHARE = 0.6
 MATCHING_SHARE = 0.7
 
-_recent_shapes = Recent(RECENT_POINTS)
-_recent_matchings = Recent(RECENT_MATCHINGS)
+_recent_shapes: Recent[MatchableShape] = Recent(RECENT_POINTS)
+_recent_matchings: Recent[compute.Matching] = Recent(RECENT_MATCHINGS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +42,7 @@ class ShownParts:
     ----------
     mode : str
         How levels are read.
-    choice : mapping
+    choice : LevelChoice
         One of ``level``, ``threshold`` and ``n_parts``; the level that the mesh shows if empty.
     level : int or None
         The level that it shows, None if it shows none.
@@ -50,7 +51,7 @@ class ShownParts:
     """
 
     mode: str
-    choice: Mapping[str, float]
+    choice: LevelChoice
     level: int | None = None
     analysis: StoredAnalysis | None = None
 
@@ -148,7 +149,7 @@ def register_all(
     targets: list[AnalysisInput],
     options: MatchOptions,
     first_free: int,
-    progress: Progress,
+    progress: compute.Progress,
 ) -> Registration:
     """Analyze all meshes and divide the targets into the parts of the reference; what is known is used again.
 
@@ -176,7 +177,11 @@ def register_all(
 
 
 def register_one(
-    reference: PreparedReference, target: AnalysisInput, options: MatchOptions, first_free: int, progress: Progress
+    reference: PreparedReference,
+    target: AnalysisInput,
+    options: MatchOptions,
+    first_free: int,
+    progress: compute.Progress,
 ) -> RegisteredShape:
     """Return a mesh divided into the parts of a reference; its own are numbered from ``first_free``."""
     shape = matchable_shape(target, progress)
@@ -186,7 +191,7 @@ def register_one(
 
 def matchable_shape(
     given: AnalysisInput,
-    progress: Progress,
+    progress: compute.Progress,
     analysis_of: Callable[..., compute.Analysis] = recent_analyses.analyze,
 ) -> MatchableShape:
     """Return an analyzed mesh, ready to be matched."""
@@ -208,7 +213,9 @@ def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> P
     part_tree, choice, corrections = source.shape.part_tree, shown.choice, None
     if shown.analysis is not None and _has_trees(shown.analysis.part_tree.hierarchy, part_tree.hierarchy):
         part_tree = replace(part_tree, branches=shown.analysis.part_tree.branches)
-        choice, corrections = choice or {"level": shown.level}, shown.analysis.corrections
+        corrections = shown.analysis.corrections
+        if not choice and shown.level is not None:
+            choice = {"level": shown.level}
     elif shown.analysis is not None and shown.analysis.corrections is not None and shown.analysis.corrections.items:
         raise Refusal(CORRECTED_BEFORE.format(name))
     labels = compute.label_branches(part_tree, mode=shown.mode, corrections=corrections, **choice)
@@ -219,7 +226,7 @@ def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> P
     )
 
 
-def _recall_shape(given: AnalysisInput, progress: Progress) -> MatchableShape:
+def _recall_shape(given: AnalysisInput, progress: compute.Progress) -> MatchableShape:
     """Return the shape of a mesh as it was prepared before, or prepare and keep it."""
     known = _recent_shapes.get(_key_of(given))
     if known is None:
@@ -241,7 +248,7 @@ def _has_trees(stored: compute.Hierarchy, hierarchy: compute.Hierarchy) -> bool:
 
 
 def _recall_matching(
-    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: Progress
+    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
     """Return the best matching as it was found before, or find and keep it."""
     key = key_of([reference.key, target.key, sorted(options.flips.items()), options.mirrored])
@@ -253,7 +260,7 @@ def _recall_matching(
 
 
 def _match(
-    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: Progress
+    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
     return compute.match_divisible(
         reference.matched, target.shape, flips=options.flips, mirrored=options.mirrored, progress=progress
@@ -267,7 +274,7 @@ def _divide(
     best: compute.Matching,
     options: MatchOptions,
     first_free: int,
-    progress: Progress,
+    progress: compute.Progress,
 ) -> RegisteredShape:
     """Return a target divided by the matching that was chosen."""
     matchings = (best, *best.alternatives)
@@ -284,6 +291,6 @@ def _divide(
     )
 
 
-def _step(progress: Progress, number: int, n_steps: int) -> Progress:
+def _step(progress: compute.Progress, number: int, n_steps: int) -> compute.Progress:
     """Return a callback whose 0..1 is one of some equal steps."""
     return compute.section(progress, number / n_steps, (number + 1) / n_steps)

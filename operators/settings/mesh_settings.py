@@ -1,9 +1,12 @@
 """The settings of a mesh that the panel shows; the values live in its state, so they follow undo, copies and files."""
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, PointerProperty
+from bpy.props import PointerProperty
 
 from ... import compute
+from ..blender.known_values import mesh_with
+from ..blender.registered_settings import SETTINGS
+from ..blender.typed_properties import EnumProperty, IntProperty, TypedProperties
 from ..mesh_state.state import read
 from ..outputs import part_writer
 from ..parts.choice_items import MODE_ITEMS
@@ -14,50 +17,50 @@ from .part_list import EigenpartsPartRow, PartList
 
 
 def _mode(settings: "EigenpartsMeshSettings") -> int:
-    return compute.MODES.index(read(settings.id_data).mode)
+    return compute.MODES.index(read(mesh_with(settings)).mode)
 
 
 @shown_in_panel
 def _set_mode(settings: "EigenpartsMeshSettings", mode: int) -> tuple[str, ...]:
-    return part_writer.show_mode(settings.id_data, compute.MODES[mode]).warnings
+    return part_writer.show_mode(mesh_with(settings), compute.MODES[mode]).warnings
 
 
 def _level(settings: "EigenpartsMeshSettings") -> int:
-    return read(settings.id_data).shown_level
+    return read(mesh_with(settings)).shown_level
 
 
 @shown_in_panel
 def _set_level(settings: "EigenpartsMeshSettings", level: int) -> tuple[str, ...]:
-    return part_writer.show_level(settings.id_data, level).warnings
+    return part_writer.show_level(mesh_with(settings), level).warnings
 
 
 def _n_parts(settings: "EigenpartsMeshSettings") -> int:
-    return read(settings.id_data).n_parts
+    return read(mesh_with(settings)).n_parts
 
 
 @shown_in_panel
 def _set_n_parts(settings: "EigenpartsMeshSettings", n_parts: int) -> tuple[str, ...]:
-    return part_writer.segment_mesh(settings.id_data, n_parts=n_parts).warnings
+    return part_writer.segment_mesh(mesh_with(settings), n_parts=n_parts).warnings
 
 
-class EigenpartsMeshSettings(PartList, CorrectionSettings, OutputSettings, bpy.types.PropertyGroup):
+class EigenpartsMeshSettings(PartList, CorrectionSettings, OutputSettings, TypedProperties, bpy.types.PropertyGroup):
     """Level, parts, corrections and outputs of a mesh."""
 
-    mode: EnumProperty(
+    mode: str = EnumProperty(
         name="Mode",
         description="What becomes a part",
         items=MODE_ITEMS,
         get=_mode,
         set=_set_mode,
     )
-    level: IntProperty(
+    level: int = IntProperty(
         name="Level",
         description="How many of the most prominent features are parts",
         min=0,
         get=_level,
         set=_set_level,
     )
-    n_parts: IntProperty(
+    n_parts: int = IntProperty(
         name="Parts",
         description="How many parts the mesh is divided into, the body included",
         min=1,
@@ -74,10 +77,10 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 def register() -> None:
     """Give meshes their settings."""
     _register_classes()
-    bpy.types.Mesh.eigenparts = PointerProperty(type=EigenpartsMeshSettings)
+    setattr(bpy.types.Mesh, SETTINGS, PointerProperty(type=EigenpartsMeshSettings))
 
 
 def unregister() -> None:
     """Take the settings away again."""
-    del bpy.types.Mesh.eigenparts
+    delattr(bpy.types.Mesh, SETTINGS)
     _unregister_classes()

@@ -2,8 +2,9 @@
 
 from typing import Any
 
-from bpy.props import BoolProperty, FloatProperty
-
+from ..blender.known_values import mesh_with
+from ..blender.mixins import GroupMixin
+from ..blender.typed_properties import BoolProperty, FloatProperty, TypedProperties
 from ..mesh_state.state import read
 from ..outputs import part_writer
 from ..outputs.output import Output
@@ -15,28 +16,28 @@ def _tick_box(output: Output) -> Any:
     """Return a property that writes an output when it is ticked, and takes it back."""
 
     def is_chosen(settings: "OutputSettings") -> bool:
-        return output in chosen(read(settings.id_data).outputs)
+        return output in chosen(read(mesh_with(settings)).outputs)
 
     @shown_in_panel
     def choose(settings: "OutputSettings", is_wanted: bool) -> None:
-        part_writer.choose_output(settings.id_data, output.key, is_wanted)
+        part_writer.choose_output(mesh_with(settings), output.key, is_wanted)
 
     return BoolProperty(name=output.name, description=output.description, get=is_chosen, set=choose)
 
 
 def _softness(settings: "OutputSettings") -> float:
-    return read(settings.id_data).softness
+    return read(mesh_with(settings)).softness
 
 
 @shown_in_panel
 def _set_softness(settings: "OutputSettings", width: float) -> None:
-    part_writer.write_outputs(settings.id_data, softness=width)
+    part_writer.write_outputs(mesh_with(settings), softness=width)
 
 
-class OutputSettings:
+class OutputSettings(TypedProperties, GroupMixin):
     """The outputs that a mesh is to have."""
 
-    softness: FloatProperty(
+    softness: float = FloatProperty(
         name="Softness",
         description="Width over which vertex groups pass from one part to the next; 0 for hard borders",
         subtype="DISTANCE",

@@ -2,24 +2,28 @@
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any
+from typing import TypeVar
 
 import bpy
 
 from ...compute.errors import EngineError
+from ..blender.known_values import mesh_with
+from ..blender.registered_settings import job_status
 from ..messages.unexpected_errors import OUT_OF_MEMORY
 from ..messages.user_errors import LINKED, Refusal, is_linked
 
-# Sets a property of a mesh, or of something on it, and may return warnings.
-Setter = Callable[[Any, Any], tuple[str, ...] | None]
+Settings = TypeVar("Settings", bound=bpy.types.PropertyGroup)
+Value = TypeVar("Value")
 
 
-def shown_in_panel(setter: Setter) -> Callable[[Any, Any], None]:
-    """Let the panel show the warnings and refusals of a setter, which does nothing on a linked mesh."""
+def shown_in_panel(
+    setter: Callable[[Settings, Value], tuple[str, ...] | None],
+) -> Callable[[Settings, Value], None]:
+    """Let the panel show the warnings that a setter returns and its refusals; it does nothing on a linked mesh."""
 
     @wraps(setter)
-    def set_property(settings: Any, value: Any) -> None:
-        status, mesh = bpy.context.window_manager.eigenparts, settings.id_data
+    def set_property(settings: Settings, value: Value) -> None:
+        status, mesh = job_status(bpy.context), mesh_with(settings)
         status.problem, status.problem_of = "", mesh.name_full
         if is_linked(mesh):
             status.problem = LINKED

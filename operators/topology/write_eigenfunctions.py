@@ -6,9 +6,12 @@ from functools import partial
 
 import bpy
 import numpy as np
-from bpy.props import IntProperty
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import IntProperty, TypedProperties
 from ..jobs import background
 from ..jobs.background import BackgroundOperator
 from ..jobs.mesh_handle import MeshHandle
@@ -25,18 +28,18 @@ LOOSE_PARTS = "The mesh has {} loose parts; the eigenfunctions are those of the 
 class VertexFunctions:
     """Eigenfunctions as (V, k) float32 on the vertices, and what is to be told of the mesh."""
 
-    values: np.ndarray
+    values: NDArray[np.float32]
     warnings: tuple[str, ...]
 
 
-class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator):
+class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bpy.types.Operator):
     """Write the smoothest eigenfunctions of the active mesh as vertex attributes"""
 
     bl_idname = "eigenparts.write_eigenfunctions"
     bl_label = "Write Eigenfunctions"
     bl_options = {"UNDO"}
 
-    n_functions: IntProperty(
+    n_functions: int = IntProperty(
         name="Number",
         description="How many functions are written, from the smoothest on",
         default=6,
@@ -49,12 +52,12 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator)
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., VertexFunctions], MeshHandle]:
-        mesh = context.object.data
+        mesh = mesh_of(context.object)
         mesh_arrays.refuse_foreign(mesh, _attributes(self.n_functions))
         solve = partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions)
-        return solve, MeshHandle.of(context.object)
+        return solve, MeshHandle.of(present(context.object))
 
-    def finish(self, context: bpy.types.Context, handle: MeshHandle, result: VertexFunctions) -> set[str]:
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, result: VertexFunctions) -> Outcome:
         mesh = handle.find_mesh()
         old = [name for name in mesh_arrays.own_names(mesh) if name.startswith(PREFIX)]
         mesh_arrays.remove_own_attributes(mesh, old)
@@ -75,7 +78,7 @@ def _functions_on_vertices(
     """Return the smoothest functions; knows nothing of Blender, so any thread may do it."""
     mesh = compute.TriangleMesh(arrays.vertices, arrays.triangles)
     basis = compute.solve_eigenbasis(mesh, n_functions, progress=progress)
-    values = np.float32(basis.functions[: len(arrays.vertices)])
+    values = basis.functions[: len(arrays.vertices)].astype(np.float32)
     n_parts = basis.surface.n_components
     return VertexFunctions(values, (LOOSE_PARTS.format(n_parts),) if n_parts > 1 else ())
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..jobs import recent_analyses
@@ -15,8 +17,6 @@ from ..messages.user_errors import Refusal, in_name_of
 from ..registration.match_options import MatchOptions
 from . import layers
 from .layers import Layer
-
-Progress = Callable[[float, str], None]
 
 # What an analysis needs for matching.
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
@@ -29,7 +29,7 @@ NOT_ALIKE = (
     " image of the other, choose Mirrored."
 )
 
-_recent_maps = Recent(RECENT_VERTICES)
+_recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +51,9 @@ class TransferShape:
 
     name: str
     arrays: MeshArrays
-    corners: np.ndarray
-    corner_vertex: np.ndarray
-    corner_polygon: np.ndarray
+    corners: NDArray[np.int64]
+    corner_vertex: NDArray[np.int64]
+    corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
 
     @property
@@ -90,7 +90,7 @@ class MappedLayers:
     """
 
     layers: list[Layer]
-    is_sure: np.ndarray
+    is_sure: NDArray[np.bool_]
     found_by: str
     confidence: float
     torn_seams: tuple[str, ...]
@@ -98,7 +98,7 @@ class MappedLayers:
 
 
 def map_to_all(
-    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: Progress
+    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: compute.Progress
 ) -> list[MappedLayers]:
     """Return the layers that each target gets.
 
@@ -112,17 +112,19 @@ def map_to_all(
     return [_mapped(shape_map, source, target, given, fills) for shape_map, target in zip(maps, targets, strict=True)]
 
 
-def _recall_maps(source: TransferShape, targets: list[TransferShape], progress: Progress) -> list[ShapeMap]:
+def _recall_maps(source: TransferShape, targets: list[TransferShape], progress: compute.Progress) -> list[ShapeMap]:
     """Return the maps to all targets; those that were found for other layers before are at hand."""
     keys = [_key_of_map(source, target) for target in targets]
-    known = {key: _recent_maps.get(key) for key in keys}
-    missing = {key: target for key, target in zip(keys, targets, strict=True) if known[key] is None}
+    known = {key: found for key in keys if (found := _recent_maps.get(key)) is not None}
+    missing = {key: target for key, target in zip(keys, targets, strict=True) if key not in known}
     if missing:
         known |= _new_maps(source, missing, progress)
     return [known[key] for key in keys]
 
 
-def _new_maps(source: TransferShape, targets: Mapping[str, TransferShape], progress: Progress) -> dict[str, ShapeMap]:
+def _new_maps(
+    source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
+) -> dict[str, ShapeMap]:
     # All are analyzed first: what cannot be is told before the longer part begins.
     first, *others = _steps(compute.section(progress, 0, 0.3), 1 + len(targets))
     source_analysis = _analyze(source, first, recent_analyses.recall)
@@ -144,7 +146,7 @@ def _key_of_map(source: TransferShape, target: TransferShape) -> str:
     return key_of([*places, options.mirrored, sorted(options.flips.items()), options.alternative])
 
 
-def _steps(progress: Progress, number: int) -> list[Progress]:
+def _steps(progress: compute.Progress, number: int) -> list[compute.Progress]:
     """Return callbacks whose 0..1 are equal steps, one after the other."""
     return [compute.section(progress, k / number, (k + 1) / number) for k in range(number)]
 
@@ -164,7 +166,7 @@ def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
 
 
 def _analyze(
-    shape: TransferShape, progress: Progress, analysis_of: Callable[..., compute.Analysis]
+    shape: TransferShape, progress: compute.Progress, analysis_of: Callable[..., compute.Analysis]
 ) -> compute.Analysis:
     """Return an analysis that is just enough for matching."""
     with in_name_of(shape.name):
@@ -176,7 +178,7 @@ def _correspond(
     target: TransferShape,
     source_analysis: compute.Analysis,
     target_analysis: compute.Analysis,
-    progress: Progress,
+    progress: compute.Progress,
 ) -> compute.Correspondence:
     options = target.options
     matching = compute.match(
@@ -245,7 +247,7 @@ class _LayerMapper:
             return layer.with_values(self._corners(layer))
         return layer.with_values(self._faces(layer.values))
 
-    def _faces(self, values: np.ndarray) -> np.ndarray:
+    def _faces(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return for each face what most of its area has on the source."""
         kinds, kind = np.unique(values, axis=0, return_inverse=True)
         labels = self._correspondence.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])
@@ -253,7 +255,7 @@ class _LayerMapper:
         polygon = self._target.arrays.polygon_of_triangle
         return kinds[compute.majority_of_polygons(labels, self.target_mesh.areas, polygon, n_polygons)]
 
-    def _corners(self, layer: Layer) -> np.ndarray:
+    def _corners(self, layer: Layer) -> NDArray[np.float64]:
         triangle_of_polygon = np.zeros(int(self._target.corner_polygon.max(initial=-1)) + 1, dtype=np.int64)
         polygon = self._target.arrays.polygon_of_triangle
         triangle_of_polygon[polygon[::-1]] = np.arange(len(polygon))[::-1]

@@ -12,7 +12,9 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
 from ..mesh_state.registration_record import SURE
 from ..mesh_state.state import is_analyzed, read
@@ -67,7 +69,7 @@ class TransferSource:
 
     shape: TransferShape
     layers: list[Layer]
-    colours: np.ndarray
+    colours: NDArray[np.float32]
 
     @property
     def name(self) -> str:
@@ -82,14 +84,14 @@ def read_source(context: bpy.types.Context, obj: bpy.types.Object, settings: Tra
         raise Refusal("Choose at least one layer to transfer.")
     layers = read_layers(obj, settings.choice)
     highest = max((int(layer.values.max(initial=0)) for layer in layers if layer.kind == PARTS), default=0)
-    return TransferSource(shape, layers, read(obj.data).parts.colours_of(highest + 1))
+    return TransferSource(shape, layers, read(mesh_of(obj)).parts.colours_of(highest + 1))
 
 
 def read_target(
     context: bpy.types.Context, obj: bpy.types.Object, source: TransferSource, settings: TransferSettings
 ) -> TransferShape:
     """Return the shape of an object that the layers of a source can be written to, or say why they cannot."""
-    match = read(obj.data).match
+    match = read(mesh_of(obj)).match
     # What the user chose of the matchings with this source holds for the transfer as well.
     known = remembered_options(match) if match is not None and match.reference == source.name else MatchOptions()
     shape = _read_shape(context, obj, replace(known, mirrored=settings.choice.swaps_sides), settings)
@@ -117,14 +119,14 @@ def _read_shape(
     context: bpy.types.Context, obj: bpy.types.Object, options: MatchOptions, settings: TransferSettings
 ) -> TransferShape:
     with in_name_of(obj.name):
-        refuse_unwritable(obj.data)
+        refuse_unwritable(mesh_of(obj))
         arrays = mesh_arrays.read_object(context, obj, settings.use_modifiers)
     return _shape_of(obj, arrays, options)
 
 
 def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: MatchOptions) -> TransferShape:
     """Return an object in the form that layers are transferred in."""
-    mesh = obj.data
+    mesh = mesh_of(obj)
     corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("loops", corners)
     n_corners = mesh_arrays.n_corners_of_polygon(mesh)
@@ -151,7 +153,7 @@ def _doubts(obj: bpy.types.Object, source: str, mapped: MappedLayers) -> list[st
     ]
     if mapped.confidence <= SURE:
         doubts.insert(0, f"{obj.name} is matched with a confidence of {mapped.confidence:.0%} only.")
-    if is_analyzed(obj.data) and any(layer.kind == PARTS for layer in mapped.layers):
+    if is_analyzed(mesh_of(obj)) and any(layer.kind == PARTS for layer in mapped.layers):
         doubts.append(HAS_PARTS.format(obj.name, source))
     return doubts
 

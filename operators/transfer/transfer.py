@@ -8,14 +8,18 @@ from functools import partial
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import transfer_settings
 from ..jobs.background import BackgroundOperator
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.selected_meshes import other_meshes
 from ..messages.user_errors import Refusal
 from ..registration.register_selected import can_start_with_others
 from . import mesh_transfer
-from .layer_mapping import MappedLayers, map_to_all
+from .layer_mapping import MappedLayers, TransferShape, map_to_all
 from .layer_reading import LayerChoice
 from .layer_writing import Mix
 from .mesh_transfer import TransferSettings, TransferSource
@@ -48,29 +52,29 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_start_with_others(cls, context, NOTHING_ELSE)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         """From the window: what the call leaves open is taken from the panel."""
         for name in TransferOptions.__annotations__:
             if not self.properties.is_property_set(name):
-                setattr(self, name, getattr(context.scene.eigenparts_transfer, name))
+                setattr(self, name, getattr(transfer_settings(context), name))
         return super().invoke(context, event)
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., list[MappedLayers]], TransferHandles]:
         targets, settings = other_meshes(context), self.transfer_settings()
         if not targets:
             raise Refusal(NOTHING_ELSE)
-        source = mesh_transfer.read_source(context, context.object, settings)
+        source = mesh_transfer.read_source(context, present(context.object), settings)
         shapes = [mesh_transfer.read_target(context, obj, source, settings) for obj in targets]
         handles = TransferHandles(source, tuple(MeshHandle.of(obj) for obj in targets), settings)
         return partial(_map_layers, source, shapes, settings), handles
 
-    def finish(self, context: bpy.types.Context, handles: TransferHandles, mapped: list[MappedLayers]) -> set[str]:
+    def finish(self, context: bpy.types.Context, handles: TransferHandles, mapped: list[MappedLayers]) -> Outcome:
         objects = [handle.find_object() for handle in handles.targets]
         for messages in mesh_transfer.write_all(objects, mapped, handles.source, handles.settings):
             messages.report(self)
         if self.selects_unsure:
             for obj, layers in zip(objects, mapped, strict=True):
-                _select(obj.data, ~layers.is_sure)
+                _select(mesh_of(obj), ~layers.is_sure)
         return {"FINISHED"}
 
     def transfer_settings(self) -> TransferSettings:
@@ -82,14 +86,14 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
 
 def _map_layers(
     source: TransferSource,
-    shapes: list[mesh_transfer.TransferShape],
+    shapes: list[TransferShape],
     settings: TransferSettings,
     progress: Callable[[float, str], None],
 ) -> list[MappedLayers]:
     return map_to_all(source.shape, source.layers, shapes, fills=settings.fills_unsure, progress=progress)
 
 
-def _select(mesh: bpy.types.Mesh, is_selected: np.ndarray) -> None:
+def _select(mesh: bpy.types.Mesh, is_selected: NDArray[np.bool_]) -> None:
     """Select vertices and nothing else."""
     mesh.vertices.foreach_set("select", is_selected)
     # Where these are absent nothing is selected. Blender 5.0 makes edges from Python with one of a wrong type, and

@@ -19,7 +19,7 @@ def test_a_cancel_at_any_step_of_progress_changes_nothing(analyzed, monkeypatch)
     before, n_steps = all_of(analyzed.data), 0
     while True:
         report = Failing(lambda fraction, text: None, n_steps + 1, engine.Cancelled)
-        monkeypatch.setattr(background, "_silent", report)
+        monkeypatch.setattr(background, "silent", report)
         with suppress(RuntimeError):
             bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=2, order="1")
         if report.n_calls <= n_steps:
@@ -40,7 +40,7 @@ def test_a_cancelled_longer_job_changes_nothing(analyzed, star, monkeypatch, ope
     before, names = [all_of(obj.data) for obj in (analyzed, other)], set(bpy.data.objects.keys())
     for n in (1, 2):
         report = Failing(lambda fraction, text: None, n, engine.Cancelled)
-        monkeypatch.setattr(background, "_silent", report)
+        monkeypatch.setattr(background, "silent", report)
         options = {} if operator == "transfer" else {"order": "1"}
         with pytest.raises(RuntimeError):
             getattr(bpy.ops.eigenparts, operator)(**options)

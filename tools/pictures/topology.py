@@ -7,14 +7,14 @@ import numpy as np
 from mathutils import Color
 from PIL import Image
 
-from eigenparts.operators.blender.known_values import elements_of, mesh_of, present
+from eigenparts.operators.blender.known_values import elements_of, mesh_of, present, set_input
 from examples import handles, humanoid
 from tools.extension_operators import run_operator
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, level_of, segment, select, standing
 from tools.pictures.lettering import sheet
 from tools.pictures.shots import shot
-from tools.render import MATERIAL, View, set_input
+from tools.render import MATERIAL, View
 
 # Linear RGB of bodies that show no parts, between the white and the dark of the complex.
 CLAY = (0.3, 0.31, 0.33, 1.0)
