@@ -76,5 +76,5 @@ class CorrectionSettings(TypedProperties, GroupMixin):
         get=_part_border,
         set=_set_part_border,
     )
-    correction_rows: Rows[EigenpartsCorrectionRow] = CollectionProperty(type=EigenpartsCorrectionRow)
+    correction_rows: "Rows[EigenpartsCorrectionRow]" = CollectionProperty(type=EigenpartsCorrectionRow)
     active_correction: int = IntProperty(name="Correction", description="A correction; the cross takes it back")

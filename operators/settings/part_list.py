@@ -85,7 +85,7 @@ def _select_active_part(settings: "PartList", part: int) -> None:
 class PartList(TypedProperties, GroupMixin):
     """The parts that a mesh shows, and the one that was clicked last."""
 
-    rows: Rows[EigenpartsPartRow] = CollectionProperty(type=EigenpartsPartRow)
+    rows: "Rows[EigenpartsPartRow]" = CollectionProperty(type=EigenpartsPartRow)
     active_part: int = IntProperty(
         name="Active Part", description="Number of the part that was clicked last", default=-1
     )
