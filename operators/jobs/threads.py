@@ -29,7 +29,7 @@ def use_threads(n_threads: int) -> int:
 
 
 class Preferences(Protocol):
-    """What the user prefers, as far as it is read before it is registered."""
+    """The preferences, as far as they are read before they are registered."""
 
     n_threads: int
 

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from compute.surface.mesh import Floats
+from eigenparts.compute.surface.mesh import Floats
 from eigenparts.operators.blender.known_values import mesh_of, present
 from tools.pictures.characters import add_mesh
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from compute import TriangleMesh
-from compute.surface.mesh import Floats, Ints
+from eigenparts.compute import TriangleMesh
+from eigenparts.compute.surface.mesh import Floats, Ints
 from eigenparts.operators.blender.known_values import elements_of, mesh_of, present
 from eigenparts.operators.mesh_state import palette
 from eigenparts.operators.mesh_state.state import read

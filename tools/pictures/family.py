@@ -6,9 +6,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from compute import TriangleMesh, analyze
-from compute.registration.parts.population import Reference, prepare_reference, register_one
-from compute.surface.mesh import Ints
+from eigenparts.compute import TriangleMesh, analyze
+from eigenparts.compute.registration.parts.population import Reference, prepare_reference, register_one
+from eigenparts.compute.surface.mesh import Ints
 from eigenparts.operators.blender.known_values import mesh_of, present
 from examples import Character, humanoid, humanoid_poses
 from tools.pictures.characters import Coarse, add_mesh, between, coarsened, paint_faces, standing, triangle_mesh

@@ -10,11 +10,11 @@ import bpy
 import numpy as np
 from PIL import Image
 
-from compute import Analysis, Matching, TriangleMesh, analyze
-from compute.registration.eigenfunctions.matching import matching_shape
-from compute.registration.parts.population import label_matched, match_divisible, with_parts
-from compute.registration.parts.transferred_labels import Divisible, divisible
-from compute.surface.mesh import Floats, Ints32
+from eigenparts.compute import Analysis, Matching, TriangleMesh, analyze
+from eigenparts.compute.registration.eigenfunctions.matching import matching_shape
+from eigenparts.compute.registration.parts.population import label_matched, match_divisible, with_parts
+from eigenparts.compute.registration.parts.transferred_labels import Divisible, divisible
+from eigenparts.compute.surface.mesh import Floats, Ints32
 from examples import Character, hand, humanoid, octopus, quadruped
 from tools.pictures.characters import FINGERS_UP, add_mesh, paint_faces
 from tools.pictures.lettering import sheet

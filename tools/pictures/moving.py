@@ -10,7 +10,7 @@ from PIL import Image
 from scipy.cluster.vq import kmeans2
 from scipy.spatial import cKDTree
 
-from compute.surface.mesh import Floats, Ints
+from eigenparts.compute.surface.mesh import Floats, Ints
 from tools.pictures.lettering import INK
 
 Bytes = NDArray[np.uint8]

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from compute.surface.mesh import Floats
+from eigenparts.compute.surface.mesh import Floats
 from eigenparts.operators.blender.known_values import data_of, present
 from examples import humanoid
 from tools.extension_operators import run_operator

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.posed_families import read_mesh
-from compute import Correspondence, TriangleMesh, analyze, correspond
-from compute.surface.mesh import Floats
+from eigenparts.compute import Correspondence, TriangleMesh, analyze, correspond
+from eigenparts.compute.surface.mesh import Floats
 from eigenparts.operators.blender.known_values import mesh_of
 from examples import Character, humanoid
 from tools.pictures.characters import add_mesh, paint, paint_faces, standing
