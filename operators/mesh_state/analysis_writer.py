@@ -11,6 +11,7 @@ from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, face_areas, fingerprint, write_attributes
 from ..messages.user_errors import Refusal
 from . import corrections, function_hints
+from .part_table import packed_table, renumbered_table
 from .schema import (
     ARCS,
     CHOICES,
@@ -49,7 +50,7 @@ def store(
     earlier = read(mesh)
     part_tree = analysis.part_tree
     has_same_parts = has_trees(earlier.stored, part_tree.hierarchy)
-    kept = _kept(earlier, (*CHOICES, *OF_PARTS) if has_same_parts else CHOICES)
+    kept = _kept(earlier, (*CHOICES, *OF_PARTS)) if has_same_parts else _kept_by_place(earlier, part_tree)
     items, painted, warnings = _kept_corrections(earlier, part_tree, has_same_parts)
     values = {
         VERSION: SCHEMA,
@@ -83,6 +84,20 @@ def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
         for name, value in values.items()
         if value is not None
     }
+
+
+def _kept_by_place(earlier: MeshState, part_tree: compute.PartTree) -> dict[str, Any]:
+    """Return the same where parts have other numbers: names and colours go where most of their faces went."""
+    kept, table = _kept(earlier, CHOICES), earlier.parts
+    if not (table.names or table.colours):
+        return kept
+    try:
+        before = earlier.analysis_of_any_shape.part_tree
+    except Refusal:
+        return kept
+    numbers = {*table.places, *table.names, *table.colours}
+    tracked = compute.tracked_parts(numbers, before, part_tree, face_areas(earlier.mesh), earlier.mode)
+    return {**kept, **packed_table(renumbered_table(table, tracked))}
 
 
 def _kept_corrections(

@@ -80,6 +80,19 @@ class PartTable:
         return replace(self, colours={**self.colours, part: colour})
 
 
+def renumbered_table(table: PartTable, tracked: Mapping[int, int]) -> PartTable:
+    """Return a table with the numbers that parts have in another analysis; those that are not there are left out."""
+    return PartTable(
+        places={
+            tracked[part]: (tracked[parent], number)
+            for part, (parent, number) in table.places.items()
+            if part in tracked and parent in tracked
+        },
+        names={tracked[part]: name for part, name in table.names.items() if part in tracked},
+        colours={tracked[part]: colour for part, colour in table.colours.items() if part in tracked},
+    )
+
+
 def number_parts(table: PartTable, parts: compute.Parts) -> PartTable:
     """Return a table in which parts that were never seen before have their place under the part they grow out of."""
     places, taken = dict(table.places), set(table.places.values())

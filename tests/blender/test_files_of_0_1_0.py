@@ -120,11 +120,12 @@ def test_bones_follow_the_layout_that_was_saved_with_the_reference():
     assert sorted(bone.name for bone in bpy.context.object.data.bones) == SHOWN["runner"]["bones"]
 
 
-def test_a_new_analysis_keeps_the_corrections(numbers):
+def test_a_new_analysis_keeps_the_corrections_and_names(numbers):
     """Twins that are equally high may change places, so parts may have other numbers, but no face goes elsewhere."""
     beast = activated("beast")
     bpy.ops.eigenparts.analyze(order="1")
     bpy.ops.eigenparts.segment(level=SHOWN["beast"]["level"])
     assert len(beast.data.eigenparts.correction_rows) == 5
+    assert {"Schnauze", "Leg"} <= {row.title for row in beast.data.eigenparts.rows}
     pairs = np.unique(np.stack([values_of(beast.data, "part"), numbers["beast labels"]]), axis=1)
     assert pairs.shape[1] == len(SHOWN["beast"]["rows"]) == beast.data.eigenparts.n_parts

@@ -1,5 +1,6 @@
 """Parts found again after another analysis of the same mesh: where most of their faces are the same."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -70,6 +71,34 @@ def carried(items: tuple[Correction, ...], old: PartTree, new: PartTree, area: F
                 elif part not in tracked:
                     same = _same_part(_inside(old, part, item, items), new, area, candidates)
                     tracked |= {} if same is None else {part: same}
+    return tracked
+
+
+def tracked_parts(parts: Iterable[int], old: PartTree, new: PartTree, area: Floats, mode: str) -> dict[int, int]:
+    """Return the number that each of some parts has in another analysis of the same faces, as far as it is found there.
+
+    Parameters
+    ----------
+    parts : iterable of int
+        Numbers in the old analysis.
+    old, new : PartTree
+        Of two analyses of a mesh.
+    area : (F,) float64
+        Of its faces.
+    mode : "nested" or "features"
+        The mode in which levels are read.
+    """
+    places = {number: place for place, (number, _) in _candidates(old, mode).items()}
+    candidates = _candidates(new, mode)
+    shift = first_own_part(new.trees[0]) - first_own_part(old.trees[0])
+    tracked = {0: 0}
+    for part in sorted(parts):
+        if part >= first_own_part(old.trees[0]):
+            tracked[part] = part + shift
+        elif part in places:
+            same = _same_part(old.faces_inside(*places[part]), new, area, candidates)
+            if same is not None and same[0] not in tracked.values():
+                tracked[part] = same[0]
     return tracked
 
 

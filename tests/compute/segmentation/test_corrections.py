@@ -19,7 +19,7 @@ from compute.segmentation.edits.corrections import (
     Labelling,
     corrected,
 )
-from compute.segmentation.edits.part_tracking import carried, renumbered
+from compute.segmentation.edits.part_tracking import carried, renumbered, tracked_parts
 from compute.segmentation.edits.redrawing import redraw, undivided
 from compute.segmentation.edits.relief import relief_of
 from compute.segmentation.faces.branches import Branches
@@ -175,6 +175,19 @@ def test_parts_are_found_again_in_another_analysis(two_orders):
         both = (labels[0].labels == item.part) & (labels[1].labels == again.part)
         assert both.sum() > 0.9 * (labels[0].labels == item.part).sum()
         assert again.value == 3.0
+
+
+def test_parts_are_tracked_to_where_most_of_their_faces_are(two_orders):
+    old, new = (analysis.part_tree() for analysis in two_orders)
+    labels = [analysis.segment() for analysis in two_orders]
+    ids = labels[0].parts.id.tolist()
+    area = two_orders[0].mesh.areas
+    assert tracked_parts(ids, old, old, area, "nested") == {part: part for part in ids}
+    tracked = tracked_parts(ids, old, new, area, "nested")
+    assert set(tracked) == set(ids)
+    for part, again in tracked.items():
+        both = (labels[0].labels == part) & (labels[1].labels == again)
+        assert both.sum() > 0.9 * (labels[0].labels == part).sum()
 
 
 def test_a_part_that_is_not_there_any_more_is_not_found(two_orders):
