@@ -1,12 +1,13 @@
 """Whether every mesh of a folder gives a result or a sentence: never a traceback, a hang or a changed mesh.
 
-usage: python -m benchmarks.corpus DIR [--jobs N] [--limit SECONDS] [--log FILE]
+usage: python -m benchmarks.corpus DIR [--jobs N] [--limit SECONDS] [--log FILE] [--table FILE]
 
 Each file is read in a process of its own. Its meshes are analyzed, divided at every level, registered with a copy that
-is turned and renumbered, given an armature and cut. A log that exists is continued; the table is printed at the end.
+is turned and renumbered, given an armature and cut. A log that exists is continued; a summary is printed at the end.
 """
 
 import argparse
+import csv
 import hashlib
 import json
 import subprocess
@@ -29,12 +30,13 @@ FINE = ("done", "sentence")
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Try all files, print the table, and return 1 if there was a fault."""
+    """Try all files, print a summary, and return 1 if there was a fault."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--limit", type=float, default=600, help="seconds after which a file hangs")
     parser.add_argument("--log", type=Path, default=Path(tempfile.gettempdir()) / "eigenparts-corpus.jsonl")
+    parser.add_argument("--table", type=Path, help="file for a line about each file, as comma-separated values")
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     if options.one:
@@ -49,21 +51,40 @@ def main(arguments: list[str] | None = None) -> int:
             log.write(json.dumps(row) + "\n")
             log.flush()
     found = [rows[name] for path in files if (name := _name(path, options.folder)) in rows]
-    sys.stdout.write(table(found))
+    if options.table:
+        write_table(found, options.table)
+    sys.stdout.write(summary(found))
     return int(any(outcome not in FINE for row in found for outcome in row["outcomes"].values()))
 
 
-def table(rows: list[dict[str, Any]]) -> str:
-    """Return the rows as Markdown, with the sentences and faults behind."""
-    steps = list(dict.fromkeys(step for row in rows for step in row["outcomes"]))
-    lines = [f"| file | faces | {' | '.join(steps)} | s |", "|---" * (len(steps) + 3) + "|"]
-    for row in rows:
-        outcomes = " | ".join(row["outcomes"].get(step, "") for step in steps)
-        lines.append(f"| {row['file']} | {row.get('faces', '')} | {outcomes} | {row['seconds']:.1f} |")
+def summary(rows: list[dict[str, Any]]) -> str:
+    """Return what became of each collection as Markdown, with the sentences and faults behind."""
+    lines = ["| collection | files | faces | done | sentence | fault | s a file |", "|---" * 7 + "|"]
+    for collection in dict.fromkeys(row["file"].split("/")[0] for row in rows):
+        inside = [row for row in rows if row["file"].split("/")[0] == collection]
+        counted = Counter(outcome for row in inside for outcome in row["outcomes"].values())
+        n_faults = counted.total() - sum(counted[outcome] for outcome in FINE)
+        n_faces = [row["faces"] for row in inside if "faces" in row] or [0]
+        seconds = sum(row["seconds"] for row in inside) / len(inside)
+        lines.append(
+            f"| {collection} | {len(inside)} | {min(n_faces)} to {max(n_faces)} | {counted['done']} | "
+            f"{counted['sentence']} | {n_faults} | {seconds:.1f} |"
+        )
     counted = Counter(outcome for row in rows for outcome in row["outcomes"].values())
     said = Counter(sentence for row in rows for sentence in row["sentences"])
     lines += ["", f"{len(rows)} files: " + ", ".join(f"{n} {outcome}" for outcome, n in counted.most_common()), ""]
     return "\n".join([*lines, *(f"- {n} x {sentence}" for sentence, n in said.most_common())]) + "\n"
+
+
+def write_table(rows: list[dict[str, Any]], path: Path) -> None:
+    """Write a line for each file, as comma-separated values."""
+    steps = list(dict.fromkeys(step for row in rows for step in row["outcomes"]))
+    with path.open("w", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(["file", "faces", *steps, "s"])
+        for row in rows:
+            outcomes = [row["outcomes"].get(step, "") for step in steps]
+            writer.writerow([row["file"], row.get("faces", ""), *outcomes, f"{row['seconds']:.1f}"])
 
 
 def _read(log: Path) -> list[dict[str, Any]]:
@@ -156,10 +177,10 @@ def every_level(obj: Any) -> None:
     """Show every level in both modes, and end at the default one."""
     import bpy
 
-    from eigenparts.operators.mesh_state import state
+    from eigenparts.operators.mesh_state.state import read
 
     _select(obj)
-    n_levels = state.summarize(obj.data).n_levels if state.is_analyzed(obj.data) else 0
+    n_levels = 1 + read(obj.data).highest_level if read(obj.data).is_readable else 0
     for mode in ("FEATURES", "NESTED"):
         for level in range(n_levels):
             bpy.ops.eigenparts.segment(level=level, mode=mode)

@@ -103,7 +103,7 @@ def _labels(vertices: np.ndarray, triangles: np.ndarray, order: int) -> np.ndarr
     for mode in ("features", "nested"):
         finest = analysis.segment(level=last, mode=mode)
         assert set(finest.labels) <= {0, *finest.parts.id}
-    return analysis.segment().labels
+    return analysis.segment(mode="features").labels
 
 
 def _read(log: Path, seed: int) -> dict[int, dict[str, Any]]:

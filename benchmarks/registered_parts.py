@@ -55,7 +55,7 @@ def run_family(data: Path, family: str, cache: Path, n_pairs: int) -> Iterator[O
         print(f"{family}: no files, left out")
         return
     source = make_copy(poses[0], "same", cache)
-    reference = prepare_reference(source.analysis, source.analysis.segment())
+    reference = prepare_reference(source.analysis, source.analysis.segment(mode="features"))
     for kind in KINDS:
         for place in np.unique(np.linspace(1, len(poses) - 1, n_pairs).astype(int)).tolist():
             yield run_pair(family, reference, make_copy(poses[place], kind, cache))

@@ -27,7 +27,7 @@ from benchmarks.registration_peers import (
     prepare_peer,
 )
 from benchmarks.registration_truth import JUDGED_FUNCTIONS, Copy, make_copy, map_error, misplaced
-from compute.analysis import analyze
+from compute.analysis.analyze import analyze
 from compute.registration.eigenfunctions.matching import Matching, match_shapes
 from compute.registration.eigenfunctions.spectral_shape import spectral_shape
 from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant

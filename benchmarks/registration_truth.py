@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.posed_families import Mirror, Pose, SurfacePoints, closest_points, decimated, remeshed
-from compute.analysis import Analysis, analyze
+from compute.analysis.analysis import Analysis
+from compute.analysis.analyze import analyze
 from compute.fem.lagrange import reference_element
 from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape
 from compute.surface.mesh import Floats, Ints, TriangleMesh

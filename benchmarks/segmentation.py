@@ -77,7 +77,7 @@ def _measure(path: Path) -> Row:
         int(path.stem),
         len(analysis.mesh.vertices),
         nested.n_parts,
-        _mean(analysis.segment().labels, people),
+        _mean(analysis.segment(mode="features").labels, people),
         _mean(nested.labels, people),
         _mean(_clustered(analysis, true_number), people),
         float(np.mean(between)),

@@ -103,7 +103,7 @@ def _take(points: SurfacePoints, chosen: Ints) -> SurfacePoints:
 def judge_of(data: Path, family: str, poses: list[Pose], source: Copy) -> Judge:
     """Return the judge of a family; makehuman has true parts and weights."""
     if family != "makehuman":
-        return Judge(poses, source.analysis.segment().labels.astype(np.int64), None)
+        return Judge(poses, source.analysis.segment(mode="features").labels.astype(np.int64), None)
     known = np.load(data / "makehuman" / "mh_body_weights.npz", allow_pickle=True)
     part = np.unique(known["part_of_vertex"], return_inverse=True)[1]
     corners = part[poses[0].mesh.triangles]

@@ -17,13 +17,13 @@ def main(argv: Sequence[str]) -> int:
         return 1
     # The engine takes its time to load, and Blender starts often without this being called.
     from .arguments import parse
-    from .run import carry_out
+    from .run import run_command
 
     try:
         options = parse(list(argv))
     except SystemExit as exit_request:
         return int(exit_request.code or 0)
-    return carry_out(options, sys.stdout, sys.stderr)
+    return run_command(options, sys.stdout, sys.stderr)
 
 
 def is_module() -> bool:

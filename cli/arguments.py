@@ -1,14 +1,16 @@
-"""What the command line understands."""
+"""Arguments of the command line."""
 
 import argparse
 import shlex
 from pathlib import Path
+from typing import TypeAlias
 
+from .. import compute
+from ..operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS_OF_FILES
 from .formats import FORMATS
 
 EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
-# Materials are not among them: they are no numbers that could go from file to file.
-LAYERS = ("groups", "shape_keys", "uvs", "colors", "attributes", "faces", "parts")
+LAYERS = tuple(kind.lower() for kind in LAYERS_OF_FILES)
 # Seconds of the longest time limit: a week.
 LONGEST = 604_800
 FILE_KINDS = f"Formats: {' '.join(FORMATS)}."
@@ -29,12 +31,12 @@ def parse(argv: list[str]) -> argparse.Namespace:
     return options
 
 
-Commands = "argparse._SubParsersAction[argparse.ArgumentParser]"
+Commands: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
 
 
 def _add_segment(commands: Commands) -> None:
-    told = "divide each mesh into parts"
-    command = commands.add_parser("segment", help=told, description=f"Divide each mesh of each file. {FILE_KINDS}")
+    summary = "divide each mesh into parts"
+    command = commands.add_parser("segment", help=summary, description=f"Divide each mesh of each file. {FILE_KINDS}")
     _add_files(command)
     _add_division(command)
     _add_execution(command)
@@ -42,11 +44,11 @@ def _add_segment(commands: Commands) -> None:
 
 
 def _add_register(commands: Commands) -> None:
-    told = "divide each mesh into the parts of a reference"
+    summary = "divide each mesh into the parts of a reference"
     about = (
         f"Divide each mesh of each file into the parts of one of them: equal numbers are the same part. {FILE_KINDS}"
     )
-    command = commands.add_parser("register", help=told, description=about)
+    command = commands.add_parser("register", help=summary, description=about)
     _add_files(command)
     command.add_argument("--source", metavar="FILE", type=Path, help="file of the reference; otherwise the first file")
     _add_reference(command)
@@ -56,9 +58,9 @@ def _add_register(commands: Commands) -> None:
 
 
 def _add_transfer(commands: Commands) -> None:
-    told = "give each mesh what another has: weights, UV maps, shape keys"
+    summary = "give each mesh what another has: weights, UV maps, shape keys"
     about = f"Transfer layers of one mesh to each mesh of each file; the results are .blend files. {FILE_KINDS}"
-    command = commands.add_parser("transfer", help=told, description=about)
+    command = commands.add_parser("transfer", help=summary, description=about)
     _add_files(command)
     command.add_argument("--source", metavar="FILE", type=Path, help="file to transfer from; otherwise the first file")
     _add_reference(command)
@@ -67,7 +69,7 @@ def _add_transfer(commands: Commands) -> None:
         "--layers",
         metavar="KINDS",
         type=_layers,
-        default=["groups"],
+        default=[kind.lower() for kind in DEFAULT_LAYERS],
         help=f"what is transferred, with commas between: {', '.join(LAYERS)}; groups if not given",
     )
     _add_execution(command)
@@ -75,9 +77,9 @@ def _add_transfer(commands: Commands) -> None:
 
 
 def _add_batch(commands: Commands) -> None:
-    told = "do all files of folders, but for those that were finished before"
+    summary = "do all files of folders, but for those that were finished before"
     about = f"Divide all files below folders, or register them if there is a --source. {FILE_KINDS}"
-    command = commands.add_parser("batch", help=told, description=about)
+    command = commands.add_parser("batch", help=summary, description=about)
     command.add_argument("folders", metavar="FOLDER", nargs="+", type=Path)
     command.add_argument(
         "--glob",
@@ -119,8 +121,8 @@ def _add_division(command: argparse.ArgumentParser) -> None:
     )
     command.add_argument(
         "--shells",
-        choices=["bridged", "largest", "separate"],
-        default="bridged",
+        choices=compute.SHELLS,
+        default=compute.SHELLS[0],
         help="loose parts are analyzed with the largest where they prolong it (default), not at all, or each by itself",
     )
     choice = command.add_mutually_exclusive_group()
@@ -129,19 +131,21 @@ def _add_division(command: argparse.ArgumentParser) -> None:
     choice.add_argument("--parts", metavar="N", type=int, dest="n_parts", help="how many parts, the body included")
     command.add_argument(
         "--mode",
-        choices=["nested", "features"],
+        choices=compute.MODES,
         help="parts inside parts (default), or only what stands out at this level",
     )
 
 
 def _add_execution(command: argparse.ArgumentParser) -> None:
     command.add_argument("--output", metavar="DIR", type=Path, help="folder for results; otherwise beside each file")
-    told = command.add_mutually_exclusive_group()
-    told.add_argument("--json", action="store_true", help="print the report as JSON")
-    told.add_argument("--json-lines", action="store_true", help="print a report for each file as soon as it is done")
-    crew = command.add_mutually_exclusive_group()
-    crew.add_argument("--jobs", metavar="N", type=_positive, help="do the files in N processes")
-    crew.add_argument("--scheduler", metavar="ADDRESS", help="do the files on a dask cluster, such as tcp://host:8786")
+    report = command.add_mutually_exclusive_group()
+    report.add_argument("--json", action="store_true", help="print the report as JSON")
+    report.add_argument("--json-lines", action="store_true", help="print a report for each file as soon as it is done")
+    processes = command.add_mutually_exclusive_group()
+    processes.add_argument("--jobs", metavar="N", type=_positive, help="do the files in N processes")
+    processes.add_argument(
+        "--scheduler", metavar="ADDRESS", help="do the files on a dask cluster, such as tcp://host:8786"
+    )
     command.add_argument(
         "--timeout",
         metavar="SECONDS",

@@ -7,7 +7,7 @@ from pathlib import Path
 from ..operators.messages.user_errors import Refusal
 from .formats import FORMATS, name_of_divided
 from .jobs import Job
-from .report import Report
+from .report import Report, Settings
 from .resume import finished_report, is_result
 
 
@@ -19,7 +19,7 @@ def find_jobs(options: argparse.Namespace) -> list[Job]:
     return list({job.path.resolve(): job for job in jobs}.values())
 
 
-def finished_reports(jobs: list[Job], settings: Report) -> dict[Job, Report]:
+def finished_reports(jobs: list[Job], settings: Settings) -> dict[Job, Report]:
     """Return the jobs that need not be done again, with their reports."""
     reports = {job: finished_report(job, settings) for job in jobs}
     return {job: report for job, report in reports.items() if report is not None}

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import bpy
 
+from ..operators.blender.known_values import mesh_of
 from ..operators.messages.user_errors import Refusal
 from .atomic_write import staged
 from .materials import give_parts_materials
@@ -14,7 +15,7 @@ from .off import read_off, write_off
 
 @dataclass(frozen=True)
 class Format:
-    """How one kind of file is read, and written with what it can hold of the parts."""
+    """A kind of file: read, and written with what it can hold of the parts."""
 
     read: Callable[[Path], None]
     write: Callable[[Path], None]
@@ -31,11 +32,13 @@ def load(path: Path) -> list[bpy.types.Object]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     # Blender looks for what is relative in the folder it was started in, whatever a script has changed to.
     FORMATS[suffix].read(path.absolute())
-    objects = {obj.data: obj for obj in reversed(bpy.data.objects) if obj.type == "MESH" and obj.data.library is None}
+    objects = {
+        mesh_of(obj): obj for obj in reversed(bpy.data.objects) if obj.type == "MESH" and mesh_of(obj).library is None
+    }
     if not objects:
         raise Refusal("there is no mesh in this file.")
     # Guides and the shapes of bones have no faces; where there are others, nobody wants these divided.
-    divisible = [obj for obj in objects.values() if obj.data.polygons]
+    divisible = [obj for obj in objects.values() if mesh_of(obj).polygons]
     return sorted(divisible or objects.values(), key=lambda obj: obj.name)
 
 

@@ -1,4 +1,4 @@
-"""What there is to do: one file and its result."""
+"""Jobs: a file and its result."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ def jobs_of_files(files: Iterable[Path], output: Path | None, name_of_result: Ca
     return [Job(path, (output or path.parent) / name_of_result(path)) for path in dict.fromkeys(files)]
 
 
-def in_the_way(jobs: Iterable[Job]) -> dict[Job, Path]:
+def conflicting_jobs(jobs: Iterable[Job]) -> dict[Job, Path]:
     """Return the jobs whose results would replace that of an earlier file, with that file."""
     first: dict[Path, Path] = {}
     earlier = {job: first.setdefault(job.target.absolute(), job.path) for job in jobs}

@@ -17,6 +17,8 @@ def main(arguments: list[str]) -> int:
     sys.path.append(folder_of_scipy)
     init = Path(__file__).resolve().parents[1] / "__init__.py"
     spec = importlib.util.spec_from_file_location(PACKAGE, init, submodule_search_locations=[str(init.parent)])
+    assert spec is not None
+    assert spec.loader is not None
     package = importlib.util.module_from_spec(spec)
     sys.modules[PACKAGE] = package
     spec.loader.exec_module(package)

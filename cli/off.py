@@ -4,11 +4,13 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..operators.blender.known_values import mesh_of, present, values_of
 from ..operators.mesh_data.mesh_arrays import read_own_integers
-from ..operators.mesh_state import part_table, state
+from ..operators.mesh_state.state import is_analyzed, read
 from ..operators.messages.user_errors import Refusal
-from ..operators.outputs.part_writer import PART
+from ..operators.outputs.division import PART
 
 
 def read_off(path: Path) -> None:
@@ -20,7 +22,7 @@ def read_off(path: Path) -> None:
     mesh = bpy.data.meshes.new(path.stem)
     mesh.from_pydata(vertices, [], polygons)
     mesh.validate()
-    bpy.context.collection.objects.link(bpy.data.objects.new(path.stem, mesh))
+    present(bpy.context.collection).objects.link(bpy.data.objects.new(path.stem, mesh))
 
 
 def parse_off(text: str) -> tuple[list[list[float]], list[list[int]]]:
@@ -47,26 +49,27 @@ def parse_off(text: str) -> tuple[list[list[float]], list[list[int]]]:
 
 def write_off(path: Path) -> None:
     """Write the meshes of the scene as one, each polygon in the colour of its part."""
-    vertices, polygons = [], []
+    vertices: list[str] = []
+    polygons: list[str] = []
     for obj in (obj for obj in bpy.data.objects if obj.type == "MESH"):
-        labels = _labels(obj.data)
-        colours = _bytes_of_labels(obj.data, int(labels.max(initial=0)) + 1)
-        for polygon, label in zip(obj.data.polygons, labels.tolist(), strict=True):
-            corners = " ".join(str(len(vertices) + index) for index in polygon.vertices)
+        labels = _labels(mesh_of(obj))
+        colours = _bytes_of_labels(mesh_of(obj), int(labels.max(initial=0)) + 1)
+        for polygon, label in zip(mesh_of(obj).polygons, labels.tolist(), strict=True):
+            corners = " ".join(str(len(vertices) + index) for index in values_of(polygon.vertices))
             polygons.append(f"{polygon.loop_total} {corners} {colours[label]}")
-        positions = (obj.matrix_world @ vertex.co for vertex in obj.data.vertices)
-        vertices += [f"{x:.9g} {y:.9g} {z:.9g}" for x, y, z in positions]
+        positions = (obj.matrix_world @ vertex.co for vertex in mesh_of(obj).vertices)
+        vertices += [f"{place.x:.9g} {place.y:.9g} {place.z:.9g}" for place in positions]
     path.write_text("\n".join(["OFF", f"{len(vertices)} {len(polygons)} 0", *vertices, *polygons]) + "\n")
 
 
-def _labels(mesh: bpy.types.Mesh) -> np.ndarray:
+def _labels(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the part of each face; all body where the mesh is not divided."""
-    divided = state.is_analyzed(mesh) and PART.name in mesh.attributes
-    return read_own_integers(mesh, PART) if divided else np.zeros(len(mesh.polygons), dtype=int)
+    divided = is_analyzed(mesh) and PART.name in mesh.attributes
+    return read_own_integers(mesh, PART) if divided else np.zeros(len(mesh.polygons), dtype=np.int32)
 
 
 def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:
     """Return the colour of each label as the format wants it, "230 159 0"."""
-    linear = part_table.colours(mesh, n_labels)[:, :3]
+    linear = read(mesh).parts.colours_of(n_labels)[:, :3]
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     return [" ".join(map(str, row)) for row in np.rint(255 * srgb).astype(int).tolist()]

@@ -1,14 +1,13 @@
-"""What parts are called outside Blender."""
+"""Names of parts outside Blender."""
 
 import bpy
 
-from ..operators.mesh_state import part_table, registration_record
+from ..operators.mesh_state.state import read
 
 
 def names_of_parts(mesh: bpy.types.Mesh) -> dict[int, str]:
     """Return the names that the user gave to parts of an analyzed mesh."""
-    given = registration_record.tables_of(mesh).get(part_table.NAMES, {})
-    return {int(part): str(name) for part, name in given.items() if part.isdecimal()}
+    return read(mesh).parts.names
 
 
 def name_of_part(label: int, given: dict[int, str]) -> str:

@@ -20,11 +20,11 @@ from pathlib import Path
 
 import bpy
 
-from ..operators.messages.user_errors import Refusal
+from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
 from .atomic_write import discard
 from .jobs import Job
-from .report import Report, path_beside
-from .run_serial import failed
+from .report import Report, path_beside, without_version
+from .run_serial import failed_report
 
 # A process does up to so many files, as it takes a second or two to start.
 MOST_FILES = 16
@@ -34,7 +34,7 @@ SHARE = 1 / 4
 CLUSTER = 16
 # Seconds to wait for its scheduler.
 PATIENCE = 10
-# What a process is told of the options, besides the layers of a transfer.
+# The options that a process is given, besides the layers of a transfer.
 OPTIONS = {
     "--object": "object",
     "--field": "field",
@@ -51,7 +51,7 @@ THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 @dataclass(frozen=True)
 class Unit:
-    """What one process does.
+    """The files that one process does.
 
     Attributes
     ----------
@@ -66,8 +66,8 @@ class Unit:
 
 
 @dataclass
-class Crew:
-    """Processes and what they are told.
+class ProcessPool:
+    """Processes that do files, each of them this command line once more.
 
     Attributes
     ----------
@@ -91,7 +91,7 @@ class Crew:
     timeout: float | None = None
     _under_way: dict["Future[subprocess.CompletedProcess[str]]", Unit] = field(default_factory=dict)
 
-    def work(self, jobs: Sequence[Job]) -> Iterator[Report]:
+    def run(self, jobs: Sequence[Job]) -> Iterator[Report]:
         """Yield a report for each file as soon as its process has ended."""
         for unit in _units(jobs, _most_files(len(jobs), self.n_processes) if self.timeout is None else 1):
             self._submit(unit)
@@ -126,7 +126,7 @@ class Crew:
         except subprocess.TimeoutExpired:
             # It was killed, and a second try would take as long.
             _clear_up(unit.jobs[0])
-            yield failed(unit.jobs[0], f"it took longer than {self.timeout:g} seconds.")
+            yield failed_report(unit.jobs[0], f"it took longer than {self.timeout:g} seconds.")
             return
         except (Exception, CancelledError) as error:
             # The process could not be started, or the machine is gone.
@@ -143,7 +143,7 @@ class Crew:
         first, *others = unit.jobs
         _clear_up(first)
         if unit.was_tried:
-            yield failed(first, f"its process ended twice before the file was done: {problem}")
+            yield failed_report(first, f"its process ended twice before the file was done: {problem}")
         else:
             self._submit(Unit((first,), was_tried=True))
         if others:
@@ -151,28 +151,42 @@ class Crew:
 
 
 @contextmanager
-def local_crew(options: argparse.Namespace) -> Iterator[Crew]:
-    """Yield processes on this machine."""
+def local_pool(options: argparse.Namespace) -> Iterator[ProcessPool]:
+    """Yield a pool of processes on this machine."""
     share = str(max(1, (os.cpu_count() or 1) // options.jobs))
     environment = {**dict.fromkeys(THREAD_SETTINGS, share), **os.environ}
     with ThreadPoolExecutor(options.jobs) as executor:
-        yield Crew(executor, own_command(), _arguments_of(options), options.jobs, environment, options.timeout)
+        yield ProcessPool(
+            executor=executor,
+            command=own_command(),
+            arguments=_arguments_of(options),
+            n_processes=options.jobs,
+            environment=environment,
+            timeout=options.timeout,
+        )
 
 
 @contextmanager
-def cluster_crew(options: argparse.Namespace) -> Iterator[Crew]:
-    """Yield processes on the machines of a dask cluster."""
+def cluster_pool(options: argparse.Namespace) -> Iterator[ProcessPool]:
+    """Yield a pool of processes on the machines of a dask cluster."""
     try:
         from distributed import Client
     except ImportError as error:
         raise Refusal('--scheduler needs dask in this Python: pip install "distributed".') from error
     try:
-        client = Client(options.scheduler, timeout=PATIENCE)
+        # Dask has no types here.
+        client = Client(options.scheduler, timeout=PATIENCE)  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as error:
         raise Refusal(f"no dask scheduler answers at {options.scheduler}.") from error
-    with client, client.get_executor() as executor:
+    with client, client.get_executor() as executor:  # type: ignore[no-untyped-call]
         command = options.worker_command or own_command()
-        yield Crew(executor, command, _arguments_of(options), CLUSTER, timeout=options.timeout)
+        yield ProcessPool(
+            executor=executor,
+            command=command,
+            arguments=_arguments_of(options),
+            n_processes=CLUSTER,
+            timeout=options.timeout,
+        )
 
 
 def _arguments_of(options: argparse.Namespace) -> list[str]:
@@ -189,7 +203,10 @@ def own_command() -> list[str]:
     """Return what starts this command line on this machine: the application, or Python with Blender as a module."""
     if bpy.app.binary_path:
         return [bpy.app.binary_path, "--background", "--command", "eigenparts"]
-    folder_of_scipy = Path(find_spec("scipy").origin).parents[1]
+    scipy = find_spec("scipy")
+    if scipy is None or scipy.origin is None:
+        raise Refusal(MISSING_SCIPY)
+    folder_of_scipy = Path(scipy.origin).parents[1]
     return [sys.executable, "-P", str(Path(__file__).with_name("launch.py")), str(folder_of_scipy)]
 
 
@@ -217,11 +234,14 @@ def _reports_in(text: str) -> list[Report]:
 
 def _as_given(report: Report, job: Job) -> Report:
     """Return a report with paths as the user gave them."""
-    output = {"output": str(job.target)} if "output" in report else {}
-    return {name: value for name, value in report.items() if name != "version"} | {"file": str(job.path)} | output
+    given = without_version(report)
+    given["file"] = str(job.path)
+    if "output" in given:
+        given["output"] = str(job.target)
+    return given
 
 
 def _end_of(process: "subprocess.CompletedProcess[str]") -> str:
-    told = process.stderr.strip().splitlines()[-1:]
+    last_line = process.stderr.strip().splitlines()[-1:]
     cause = f"signal {-process.returncode}" if process.returncode < 0 else f"exit code {process.returncode}"
-    return ", ".join([cause, *told]) + "."
+    return ", ".join([cause, *last_line]) + "."

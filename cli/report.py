@@ -1,13 +1,14 @@
-"""What is said of each file: a report that programs read, and a line for people."""
+"""Reports of files: values that programs read, and a line for people."""
 
 import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import NotRequired, TypedDict, cast
 
 import bpy
 
 from ..compute.errors import EngineError
+from ..compute.registration.parts.transferred_labels import FaceLabels
 from ..compute.segmentation.parts.part_labels import BranchLabels
 from ..operators.messages.user_errors import Refusal
 from .atomic_write import staged
@@ -15,10 +16,56 @@ from .part_names import name_of_part, names_of_parts
 
 # Raised when the layout of the report changes; report.schema.json describes it.
 VERSION = 1
-Report = dict[str, Any]
+
+# All that the results of a command depend on besides the files.
+Settings = dict[str, object]
 
 
-def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels) -> list[Report]:
+class PartRow(TypedDict):
+    """A part of a divided object."""
+
+    id: int
+    name: str
+    parent: int
+    area: float
+    faces: int
+    # Of registered objects: whether the reference has it too.
+    matched: NotRequired[bool]
+
+
+class ObjectRow(TypedDict):
+    """An object of a file; what it has depends on the command, and ``error`` on how it went."""
+
+    name: str
+    error: NotRequired[str]
+    seconds: NotRequired[float]
+    warnings: NotRequired[list[str]]
+    level: NotRequired[int]
+    n_levels: NotRequired[int]
+    parts: NotRequired[list[PartRow]]
+    confidence: NotRequired[float]
+    source: NotRequired[str]
+    found_by: NotRequired[str]
+    layers: NotRequired[list[str]]
+    unsure_vertices: NotRequired[int]
+    reference: NotRequired[str]
+
+
+class Report(TypedDict):
+    """A file; ``output`` if a result was written."""
+
+    file: str
+    error: NotRequired[str]
+    seconds: NotRequired[float]
+    digest: NotRequired[str]
+    settings: NotRequired[Settings]
+    objects: NotRequired[list[ObjectRow]]
+    output: NotRequired[str]
+    # Of a batch: whether the result was there before.
+    skipped: NotRequired[bool]
+
+
+def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels | FaceLabels) -> list[PartRow]:
     """Return the table of parts of a divided mesh."""
     parts, given = labels.parts, names_of_parts(mesh)
     columns = (parts.id.tolist(), parts.parent.tolist(), parts.area.tolist(), parts.n_triangles.tolist())
@@ -39,9 +86,14 @@ def problem_of(error: Exception) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-def problems_of(rows: Iterable[Report]) -> str:
+def problems_of(rows: Iterable[ObjectRow]) -> str:
     """Return one line about the objects of a file that failed, empty if none did."""
     return " ".join(f"{row['name']}: {row['error']}" for row in rows if "error" in row)
+
+
+def without_version(report: Report) -> Report:
+    """Return a report that was read without the version that it was written with."""
+    return cast(Report, {name: value for name, value in report.items() if name != "version"})
 
 
 def path_beside(target: Path) -> Path:
@@ -66,12 +118,12 @@ def as_document(reports: list[Report]) -> str:
 
 
 def sentence(report: Report) -> str:
-    """Return what people want to know of a file that went well."""
+    """Return a line for people about a file that went well."""
     counts = ", ".join(_counts(row) for row in report["objects"] if "error" not in row)
     return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}"
 
 
-def _counts(row: Report) -> str:
+def _counts(row: ObjectRow) -> str:
     if "layers" in row:
         return f"{row['name']}: {len(row['layers'])} layers ({row['confidence']:.0%} sure)"
     sureness = f" ({row['confidence']:.0%} sure)" if "confidence" in row else ""

@@ -1,4 +1,4 @@
-"""Tell about each file as it is done: lines for people, or JSON."""
+"""Reporters of files: lines for people, or JSON, and the progress of a batch."""
 
 import argparse
 import time
@@ -11,10 +11,10 @@ from .report import Report, as_document, as_line, sentence
 PAUSE = 10.0
 
 
-class Teller(Protocol):
-    """What becomes of the reports on stdout."""
+class Reporter(Protocol):
+    """Writer of reports to stdout."""
 
-    def tell(self, report: Report) -> None:
+    def add(self, report: Report) -> None:
         """Take the report of a file that is done."""
 
     def close(self) -> None:
@@ -27,7 +27,7 @@ class Sentences:
     def __init__(self, out: TextIO) -> None:
         self._out = out
 
-    def tell(self, report: Report) -> None:
+    def add(self, report: Report) -> None:
         """Write the line."""
         if "error" not in report and "skipped" not in report:
             self._out.write(sentence(report) + "\n")
@@ -43,7 +43,7 @@ class JsonLines:
     def __init__(self, out: TextIO) -> None:
         self._out = out
 
-    def tell(self, report: Report) -> None:
+    def add(self, report: Report) -> None:
         """Write the line."""
         self._out.write(as_line(report) + "\n")
         self._out.flush()
@@ -56,9 +56,10 @@ class JsonDocument:
     """One document at the end."""
 
     def __init__(self, out: TextIO) -> None:
-        self._out, self._reports = out, []
+        self._out = out
+        self._reports: list[Report] = []
 
-    def tell(self, report: Report) -> None:
+    def add(self, report: Report) -> None:
         """Keep the report."""
         self._reports.append(report)
 
@@ -69,7 +70,7 @@ class JsonDocument:
 
 
 class ProgressLine:
-    """How far a batch is: one line that is written over and over on a terminal, and now and then elsewhere."""
+    """Progress of a batch: one line that is written over and over on a terminal, and now and then elsewhere."""
 
     def __init__(self, err: TextIO, n_files: int, n_finished_before: int) -> None:
         self._err, self._n_files, self._n_finished_before = err, n_files, n_finished_before
@@ -78,7 +79,7 @@ class ProgressLine:
         self._start = self._last = time.monotonic()
 
     def counting(self, reports: Iterable[Report]) -> Iterator[Report]:
-        """Pass reports on and tell how far it is after each."""
+        """Pass reports on, and write the progress after each."""
         self._show()
         for report in reports:
             self._clear()
@@ -111,7 +112,7 @@ class ProgressLine:
         return f"{text}, {_duration(seconds)}" if self._n_done else text
 
 
-def teller_for(options: argparse.Namespace, out: TextIO) -> Teller:
+def reporter_for(options: argparse.Namespace, out: TextIO) -> Reporter:
     """Return what the options ask for."""
     if options.json:
         return JsonDocument(out)

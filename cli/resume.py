@@ -1,13 +1,14 @@
-"""Which files need not be done again: the report kept with a result says what it was made of."""
+"""Finished files, which need not be done again: the report kept with a result says what it was made of."""
 
 import json
 from collections.abc import Iterator
 from hashlib import blake2b
 from pathlib import Path
+from typing import cast
 from urllib.parse import unquote
 
 from .jobs import Job
-from .report import VERSION, Report, path_beside
+from .report import VERSION, Report, Settings, path_beside, without_version
 
 
 def digest_of(path: Path) -> str:
@@ -20,7 +21,7 @@ def digest_of(path: Path) -> str:
     return digest.hexdigest()
 
 
-def finished_report(job: Job, settings: Report) -> Report | None:
+def finished_report(job: Job, settings: Settings) -> Report | None:
     """Return the report of a result that would come out the same again; None if there is no such result."""
     report = _read(path_beside(job.target))
     same = {"version": VERSION, "settings": settings}
@@ -30,8 +31,11 @@ def finished_report(job: Job, settings: Report) -> Report | None:
         is_same = job.target.stat().st_size > 0 and report.get("digest") == digest_of(job.path)
     except OSError:
         return None
-    report = {name: value for name, value in report.items() if name != "version"}
-    return report | {"file": str(job.path), "output": str(job.target), "skipped": True} if is_same else None
+    if not is_same:
+        return None
+    report = without_version(report)
+    report["file"], report["output"], report["skipped"] = str(job.path), str(job.target), True
+    return report
 
 
 def is_result(path: Path) -> bool:
@@ -48,7 +52,8 @@ def _read(path: Path) -> Report | None:
     except (OSError, ValueError):
         return None
     # Reports of results have objects; nothing else of what is read is trusted to be anything.
-    return report if isinstance(report, dict) and isinstance(report.get("objects"), list) else None
+    is_report = isinstance(report, dict) and isinstance(report.get("objects"), list)
+    return cast(Report, report) if is_report else None
 
 
 def _buffers(path: Path) -> Iterator[Path]:

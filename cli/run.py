@@ -1,4 +1,4 @@
-"""Carry a command out: which files, by whom, and what is told of each."""
+"""Run a command: find its files, do them here or in processes, and report each."""
 
 import argparse
 from collections.abc import Iterable, Iterator
@@ -8,17 +8,17 @@ from typing import TextIO
 from ..operators.messages.user_errors import Refusal
 from . import batch
 from .formats import name_of_divided, name_of_transferred
-from .jobs import Job, in_the_way, jobs_of_files
-from .process_pool import cluster_crew, local_crew
+from .jobs import Job, conflicting_jobs, jobs_of_files
+from .process_pool import cluster_pool, local_pool
 from .registering import Register
 from .report import Report
-from .reporters import ProgressLine, teller_for
-from .run_serial import Command, failed, work_here
+from .reporters import ProgressLine, reporter_for
+from .run_serial import Command, failed_report, run_in_this_process
 from .segmenting import Segment
 from .transferring import Transfer
 
 
-def carry_out(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
+def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do what was asked for, tell about each file, and return 1 if any failed."""
     do = _run_batch if options.command == "batch" else _run_files
     try:
@@ -34,7 +34,7 @@ def _run_files(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do the files that were named, tell about each, and return 1 if any failed."""
     name_of_result = name_of_transferred if options.command == "transfer" else name_of_divided
     jobs = jobs_of_files(options.files, options.output, name_of_result)
-    return _tell(_reports(jobs, options), options, out, err)
+    return _report_all(_reports(jobs, options), options, out, err)
 
 
 def _run_batch(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
@@ -43,34 +43,34 @@ def _run_batch(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     finished = {} if options.again else batch.finished_reports(jobs, _command(options).settings)
     unfinished = [job for job in jobs if job not in finished]
     line = ProgressLine(err, len(unfinished), len(finished))
-    return _tell(chain(finished.values(), line.counting(_reports(unfinished, options))), options, out, err)
+    return _report_all(chain(finished.values(), line.counting(_reports(unfinished, options))), options, out, err)
 
 
-def _tell(reports: Iterable[Report], options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
-    teller, any_failed = teller_for(options, out), False
+def _report_all(reports: Iterable[Report], options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
+    reporter, any_failed = reporter_for(options, out), False
     for report in reports:
         if "error" in report:
             any_failed = True
             err.write(f"{report['file']}: {report['error']}\n")
-        teller.tell(report)
-    teller.close()
+        reporter.add(report)
+    reporter.close()
     return int(any_failed)
 
 
 def _reports(jobs: list[Job], options: argparse.Namespace) -> Iterator[Report]:
     """Yield the report of each file when it is done."""
-    blocked = in_the_way(jobs)
+    blocked = conflicting_jobs(jobs)
     for job, earlier in blocked.items():
-        yield failed(job, f"its result would replace that of {earlier}; give them different folders.")
+        yield failed_report(job, f"its result would replace that of {earlier}; give them different folders.")
     free = [job for job in jobs if job not in blocked]
     if options.scheduler:
-        with cluster_crew(options) as crew:
-            yield from crew.work(free)
+        with cluster_pool(options) as pool:
+            yield from pool.run(free)
     elif options.jobs:
-        with local_crew(options) as crew:
-            yield from crew.work(free)
+        with local_pool(options) as pool:
+            yield from pool.run(free)
     else:
-        yield from work_here(free, _command(options))
+        yield from run_in_this_process(free, _command(options))
 
 
 def _command(options: argparse.Namespace) -> Command:

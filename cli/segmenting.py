@@ -2,17 +2,17 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 import bpy
 
 from ..compute.progress import silent
-from ..operators.mesh_data import mesh_arrays
-from ..operators.outputs import part_writer
-from ..operators.parts.analyze import analyze_arrays
+from ..operators.blender.known_values import mesh_of
+from ..operators.outputs.level_choice import LevelChoice
+from ..operators.parts import mesh_segmentation
 from . import formats
-from .objects import chosen, engine_options, report_each, row_of, store
-from .report import Report
+from .objects import analysis_settings, chosen_objects, report_each, row_of
+from .report import ObjectRow, Settings
 
 
 class Segment:
@@ -22,26 +22,26 @@ class Segment:
         self._options = options
 
     @property
-    def settings(self) -> Report:
-        """What the results depend on besides the files."""
+    def settings(self) -> Settings:
+        """All that the results depend on besides the files."""
         options = self._options
         given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
         return {"command": "segment", **given, "choice": choice_of(options)}
 
-    def open_and_divide(self, path: Path) -> list[Report]:
+    def open_and_process(self, path: Path) -> list[ObjectRow]:
         """Leave a file open with its meshes divided, and return a row for each."""
-        return report_each(chosen(formats.load(path), self._options.object), self._divide)
+        return report_each(chosen_objects(formats.load(path), self._options.object), self._divide)
 
-    def _divide(self, obj: bpy.types.Object) -> Report:
-        mesh = obj.data
-        part_writer.refuse_foreign_results(mesh)
-        outcome = analyze_arrays(mesh_arrays.read_mesh(mesh), engine_options(mesh, self._options), silent)
-        warnings = store(mesh, outcome)
-        labels = part_writer.segment_mesh(mesh, mode=self._options.mode, **choice_of(self._options))
-        return row_of(obj, labels, outcome, warnings)
+    def _divide(self, obj: bpy.types.Object) -> ObjectRow:
+        given = mesh_segmentation.read(bpy.context, obj, analysis_settings(self._options))
+        result = mesh_segmentation.analyze(given, silent)
+        segmented = mesh_segmentation.write(
+            mesh_of(obj), result, mode=self._options.mode, choice=choice_of(self._options)
+        )
+        return row_of(obj, segmented.labels, result, segmented.messages)
 
 
-def choice_of(options: argparse.Namespace) -> dict[str, Any]:
+def choice_of(options: argparse.Namespace) -> LevelChoice:
     """Return the level, threshold or number of parts that was given, if any."""
-    choice = {name: getattr(options, name) for name in ("level", "threshold", "n_parts")}
-    return {name: value for name, value in choice.items() if value is not None}
+    choice = {name: getattr(options, name) for name in LevelChoice.__annotations__}
+    return cast(LevelChoice, {name: value for name, value in choice.items() if value is not None})

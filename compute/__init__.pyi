@@ -1,10 +1,15 @@
 """The names of the engine that are loaded when they are first asked for; ``__init__.py`` reads where they live here."""
 
 # The scripting API.
-from .analysis import Analysis as Analysis
-from .analysis import analyze as analyze
-from .analysis import reeb_graph as reeb_graph
-from .analysis import zero_level as zero_level
+from .analysis.analysis import Analysis as Analysis
+from .analysis.analyze import analyze as analyze
+from .analysis.readings import reeb_graph as reeb_graph
+from .analysis.readings import zero_level as zero_level
+from .choices import BOUNDARIES as BOUNDARIES
+from .choices import FIELDS as FIELDS
+from .choices import MODES as MODES
+from .choices import ORDERS as ORDERS
+from .choices import SHELLS as SHELLS
 from .errors import Cancelled as Cancelled
 from .errors import EngineError as EngineError
 from .errors import FieldError as FieldError
@@ -22,6 +27,7 @@ from .msc.morse_smale import MorseSmaleComplex as MorseSmaleComplex
 from .msc.reeb import ReebGraph as ReebGraph
 
 # What the extension asks for beside it.
+from .progress import Progress as Progress
 from .progress import naming as naming
 from .progress import section as section
 from .progress import silent as silent
@@ -49,6 +55,7 @@ from .registration.parts.transferred_labels import divisible as divisible
 from .segmentation.borders.edge_borders import shortened_borders as shortened_borders
 from .segmentation.borders.edge_profile import EdgeProfile as EdgeProfile
 from .segmentation.borders.edge_profile import vertex_heights as vertex_heights
+from .segmentation.borders.level_set_borders import Crossings as Crossings
 from .segmentation.borders.level_set_borders import cross_edges as cross_edges
 from .segmentation.edits.corrections import CORRECTION_KINDS as CORRECTION_KINDS
 from .segmentation.edits.corrections import LEVEL as LEVEL
@@ -61,6 +68,7 @@ from .segmentation.edits.corrections import Corrections as Corrections
 from .segmentation.edits.part_tracking import carried as carried
 from .segmentation.edits.part_tracking import carried_painting as carried_painting
 from .segmentation.edits.part_tracking import renumbered as renumbered
+from .segmentation.edits.redrawing import Drawn as Drawn
 from .segmentation.edits.redrawing import corrected_crossings as corrected_crossings
 from .segmentation.edits.redrawing import drawn_borders as drawn_borders
 from .segmentation.edits.redrawing import hill_of as hill_of
@@ -77,15 +85,18 @@ from .segmentation.faces.face_graph import FaceGraph as FaceGraph
 from .segmentation.faces.face_graph import face_graph as face_graph
 from .segmentation.faces.part_tree import PartTree as PartTree
 from .segmentation.hierarchy.arc_measures import ArcMeasures as ArcMeasures
+from .segmentation.hierarchy.arc_tree import ALWAYS as ALWAYS
+from .segmentation.hierarchy.arc_tree import NEVER as NEVER
+from .segmentation.hierarchy.arc_tree import NO_SADDLE as NO_SADDLE
 from .segmentation.hierarchy.arc_tree import ArcTree as ArcTree
 from .segmentation.hierarchy.levels import DEFAULT_THRESHOLD as DEFAULT_THRESHOLD
 from .segmentation.hierarchy.levels import NOISE_THRESHOLD as NOISE_THRESHOLD
 from .segmentation.hierarchy.levels import Hierarchy as Hierarchy
 from .segmentation.hierarchy.nesting import first_own_part as first_own_part
 from .segmentation.hierarchy.nesting import number_behind as number_behind
-from .segmentation.modes import MODES as MODES
 from .segmentation.parts.function_hints import FunctionHint as FunctionHint
 from .segmentation.parts.function_hints import judge_eigenfunctions as judge_eigenfunctions
+from .segmentation.parts.part_labels import BranchLabels as BranchLabels
 from .segmentation.parts.part_labels import Parts as Parts
 from .segmentation.parts.part_labels import Segmentation as Segmentation
 from .segmentation.parts.part_labels import label_behind as label_behind
@@ -97,6 +108,7 @@ from .skeletons.layout import BoneLayout as BoneLayout
 from .skeletons.layout import LimbLayout as LimbLayout
 from .skeletons.symmetry import mirror_parts as mirror_parts
 from .skeletons.symmetry import sides as sides
+from .surface.cleaning import Surface as Surface
 from .surface.cleaning import analyzed_surface as analyzed_surface
 from .surface.heat_smoothing import softened_labels as softened_labels
 from .surface.mesh import TriangleMesh as TriangleMesh

@@ -15,9 +15,8 @@ MAY_IMPORT = {
     "operators": {"compute"},
     "cli": {"compute", "operators"},
     "ui": {
-        *("operators.mesh_state.state", "operators.mesh_state.palette", "operators.mesh_state.registration_record"),
-        *("operators.mesh_state.function_hints", "operators.messages", "operators.parts.border_lines"),
-        *("operators.parts.part_outline", "operators.blender"),
+        *("operators.blender", "operators.mesh_state", "operators.messages", "operators.outputs.output_registry"),
+        *("operators.parts.border_lines", "operators.parts.part_outline", "operators.mesh_data.selected_meshes"),
     },
 }
 OUTSIDE = {
@@ -31,10 +30,10 @@ OUTSIDE = {
 ORDER = {
     # The path of the data, read from left to right.
     "compute": [
-        *("errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
+        *("choices", "errors", "progress", "memory", "surface", "fem", "fields", "msc", "segmentation", "analysis"),
         *("registration", "skeletons"),
     ],
-    "compute.segmentation": ["modes", "hierarchy", "faces", "borders", "edits", "parts"],
+    "compute.segmentation": ["hierarchy", "faces", "borders", "edits", "parts"],
     "compute.registration": ["eigenfunctions", "dense", "parts", "paper"],
     "operators": [
         *("blender", "messages", "mesh_data", "mesh_state", "outputs", "jobs", "parts", "corrections", "registration"),

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @dataclass(frozen=True)
 class Benchmark:
-    """How a benchmark is run.
+    """The arguments that a benchmark is run with.
 
     Attributes
     ----------

@@ -12,7 +12,9 @@ import sys
 import time
 from pathlib import Path
 
-from touched import changed_files, touched_tests
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from tools.touched import changed_files, touched_tests
 
 ROOT = Path(__file__).parents[1]
 # What tests may take, so that all is done within a minute.

@@ -8,7 +8,7 @@ import json
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -21,13 +21,40 @@ from tools.extension import load_extension
 load_extension()
 from eigenparts.cli import formats
 from eigenparts.cli.suppress_output import blender_is_quiet as quiet
-from eigenparts.operators.mesh_state import state
+from eigenparts.operators.blender.known_values import mesh_of, present
+from eigenparts.operators.mesh_state.state import read
 from eigenparts.operators.messages.user_errors import Refusal
+from tools.extension_operators import run_operator
 from tools.render import render, side_by_side
 
 POSES = ("rest", "walk")
 # Coarse is the level a person would pick; fine shows whatever stands out by a thousandth of the range, such as fingers.
-LEVELS = {"coarse": {}, "fine": {"threshold": 1e-3}}
+LEVELS: dict[str, dict[str, float]] = {"coarse": {}, "fine": {"threshold": 1e-3}}
+
+
+class Part(TypedDict):
+    """A part in the report."""
+
+    id: int
+    share_of_area: float
+    faces: int
+
+
+class Level(TypedDict):
+    """The parts that an object shows at one level."""
+
+    level: int
+    n_levels: int
+    parts: list[Part]
+
+
+class Row(TypedDict):
+    """An object in the report."""
+
+    name: str
+    seconds: float
+    levels: dict[str, Level]
+    pictures: list[str]
 
 
 def main(arguments: list[str]) -> int:
@@ -62,7 +89,7 @@ def _characters() -> list[bpy.types.Object]:
     objects = [add_posed_mesh(character, pose) for pose in POSES]
     for place, obj in enumerate(objects):
         obj.location.x = 1.8 * place
-    bpy.context.view_layer.update()
+    present(bpy.context.view_layer).update()
     return objects
 
 
@@ -73,28 +100,28 @@ def _load(path: Path) -> list[bpy.types.Object]:
         sys.exit(f"{path}: {refusal}")
 
 
-def _divide(obj: bpy.types.Object, folder: Path) -> dict[str, Any]:
+def _divide(obj: bpy.types.Object, folder: Path) -> Row:
     """Analyze one object, take a picture at each level, and return its row of the report."""
-    bpy.context.view_layer.objects.active = obj
+    present(bpy.context.view_layer).objects.active = obj
     start = time.perf_counter()
-    with quiet():
-        bpy.ops.eigenparts.analyze()
-    row: dict[str, Any] = {"name": obj.name, "seconds": round(time.perf_counter() - start, 2), "levels": {}}
-    row["pictures"] = [_picture(obj, folder, name, row["levels"]) for name in reversed(LEVELS)][::-1]
-    return row
+    run_operator("analyze")
+    seconds, levels = round(time.perf_counter() - start, 2), dict[str, Level]()
+    pictures = [_picture(obj, folder, name, levels) for name in reversed(LEVELS)][::-1]
+    return {"name": obj.name, "seconds": seconds, "levels": levels, "pictures": pictures}
 
 
-def _picture(obj: bpy.types.Object, folder: Path, name: str, levels: dict[str, Any]) -> str:
-    with quiet():
-        bpy.ops.eigenparts.segment(**LEVELS[name])
-    summary = state.summarize(obj.data)
-    parts = [{"id": part, "share_of_area": round(share, 4), "faces": n_faces} for part, share, n_faces in summary.parts]
+def _picture(obj: bpy.types.Object, folder: Path, name: str, levels: dict[str, Level]) -> str:
+    run_operator("segment", **LEVELS[name])
+    summary = read(mesh_of(obj)).summary
+    parts: list[Part] = [
+        {"id": part, "share_of_area": round(share, 4), "faces": n_faces} for part, share, n_faces in summary.parts
+    ]
     levels[name] = {"level": summary.level, "n_levels": summary.n_levels, "parts": parts}
     with quiet():
         return render([obj], folder / f"{obj.name.replace(' ', '_')}_{name}.png").name
 
 
-def _leave(folder: Path, rows: list[dict[str, Any]], overview: Path) -> None:
+def _leave(folder: Path, rows: list[Row], overview: Path) -> None:
     (folder / "report.json").write_text(json.dumps({"objects": rows}, indent=2) + "\n")
     with quiet():
         bpy.ops.wm.save_as_mainfile(filepath=str((folder / "demo.blend").resolve()), compress=True)

@@ -11,8 +11,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from pythons import find_python
-from system_libraries import explain_failed_import
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from tools.pythons import find_python
+from tools.system_libraries import explain_failed_import
 
 REQUIREMENTS = Path(__file__).with_name("requirements.txt")
 
@@ -85,7 +87,7 @@ def _create(folder: Path, version: str) -> None:
 def _install(python: Path, blender: str) -> None:
     numpy = BLENDERS[blender][1]
     packages = [f"bpy=={blender}", f"numpy=={numpy}", "-r", str(REQUIREMENTS)]
-    command = [python, "-m", "pip", "install", "-qq", "--disable-pip-version-check", *packages]
+    command = [str(python), "-m", "pip", "install", "-qq", "--disable-pip-version-check", *packages]
     if subprocess.run(command).returncode:
         raise SetUpError(f"pip could not install Blender {blender} and its companions; see its message above.")
 

@@ -14,6 +14,8 @@ def load_extension() -> ModuleType:
     if PACKAGE not in sys.modules:
         init = ROOT / "__init__.py"
         spec = importlib.util.spec_from_file_location(PACKAGE, init, submodule_search_locations=[str(ROOT)])
+        assert spec is not None
+        assert spec.loader is not None
         module = importlib.util.module_from_spec(spec)
         sys.modules[PACKAGE] = module
         spec.loader.exec_module(module)

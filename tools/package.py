@@ -49,7 +49,11 @@ def _run_builder(*arguments: object) -> None:
 
 def _builders() -> Iterator[Path]:
     """Blender's builder comes with the bpy module and runs without it being loaded."""
-    return Path(find_spec("bpy").submodule_search_locations[0]).glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
+    module = find_spec("bpy")
+    homes = module.submodule_search_locations if module else None
+    if not homes:
+        sys.exit("Blender as a Python module is not installed.")
+    return Path(homes[0]).glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
 
 
 def _run(*command: object) -> None:

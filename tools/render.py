@@ -5,10 +5,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from math import radians, tan
 from pathlib import Path
+from typing import Literal, Protocol, cast
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
+from numpy.typing import NDArray
+
+from eigenparts.operators.blender.known_values import elements_of, mesh_of, present, set_input
+
+# (height, width, 4) RGBA, the lowest row first, or parts of it.
+Pixels = NDArray[np.float32]
+Points = NDArray[np.float32]
 
 # Close to white, so that the palette's light colours still stand out.
 BACKGROUND = 0.955
@@ -28,6 +36,17 @@ MATERIAL = "eigenparts picture"
 CLAY, GLOW_SAMPLES = 0.45, 16
 # Hidden less than this, the ground counts as lit: what the denoiser leaves.
 LIT = 0.015
+# The property of scenes that holds the settings of the renderer.
+CYCLES = "cycles"
+
+
+class _Cycles(Protocol):
+    device: Literal["CPU", "GPU"]
+    samples: int
+    seed: int
+    max_bounces: int
+    use_denoising: bool
+    denoising_prefilter: Literal["NONE", "FAST", "ACCURATE"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +70,7 @@ class View:
     width: int = 600
     height: int = 750
     samples: int = 12
-    framed: np.ndarray | None = None
+    framed: Points | None = None
 
 
 def render(
@@ -78,16 +97,17 @@ def render(
     return path
 
 
-def light(objects: Sequence[bpy.types.Object], path: Path, view: View) -> np.ndarray:
+def light(objects: Sequence[bpy.types.Object], path: Path, view: View) -> Pixels:
     """Return (height, width, 4) light on some objects and their shadow, whatever their colours; a file is written."""
     with _stage([_posed_copy(obj, _material("", CLAY)) for obj in objects], view) as (scene, _):
         return _taken(scene, path, hidden=[])
 
 
-def paint_light(lit: np.ndarray, objects: Sequence[bpy.types.Object], path: Path, view: View) -> Path:
+def paint_light(lit: Pixels, objects: Sequence[bpy.types.Object], path: Path, view: View) -> Path:
     """Write a PNG of objects in the light that was found before: much faster, and it never flickers."""
     with _stage([_posed_copy(obj, _glowing("part_color")) for obj in objects], view) as (scene, ground):
-        scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.max_bounces = GLOW_SAMPLES, False, 0
+        cycles = _cycles(scene)
+        cycles.samples, cycles.use_denoising, cycles.max_bounces = GLOW_SAMPLES, False, 0
         colours = _taken(scene, path, hidden=[ground])
     shown, is_object = lit.copy(), colours[..., 3] > 0
     reflected = _linear(lit[is_object, :3]) / CLAY * _linear(colours[is_object, :3])
@@ -115,10 +135,11 @@ def side_by_side(paths: Sequence[Path], target: Path) -> Path:
     return target
 
 
-def world_positions(obj: bpy.types.Object) -> np.ndarray:
+def world_positions(obj: bpy.types.Object) -> Points:
     """Return the (V, 3) float32 vertices of an object in the space of the scene."""
-    positions = np.empty(3 * len(obj.data.vertices), dtype=np.float32)
-    obj.data.attributes["position"].data.foreach_get("vector", positions)
+    mesh = mesh_of(obj)
+    positions = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    elements_of(mesh.attributes["position"]).foreach_get("vector", positions)
     matrix = np.array(obj.matrix_world, dtype=np.float32)
     return positions.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
 
@@ -144,15 +165,13 @@ def _material(attribute: str, grey: float | None = None) -> bpy.types.Material:
         return bpy.data.materials[name]
     material, nodes = _nodes(name)
     surface = nodes["Principled BSDF"]
-    surface.inputs["Roughness"].default_value = 0.55
-    surface.inputs["Specular IOR Level"].default_value = 0.25
+    set_input(surface, "Roughness", 0.55)
+    set_input(surface, "Specular IOR Level", 0.25)
     if grey is not None:
-        surface.inputs["Base Color"].default_value = (grey, grey, grey, 1)
+        set_input(surface, "Base Color", (grey, grey, grey, 1))
         return material
-    colour = nodes.new("ShaderNodeVertexColor" if attribute else "ShaderNodeObjectInfo")
-    if attribute:
-        colour.layer_name = attribute
-    material.node_tree.links.new(colour.outputs["Color"], surface.inputs["Base Color"])
+    colour = _attribute_colour(nodes, attribute) if attribute else nodes.new("ShaderNodeObjectInfo")
+    present(material.node_tree).links.new(colour.outputs["Color"], surface.inputs["Base Color"])
     return material
 
 
@@ -162,12 +181,19 @@ def _glowing(attribute: str) -> bpy.types.Material:
     if name in bpy.data.materials:
         return bpy.data.materials[name]
     material, nodes = _nodes(name)
-    colour, shine = nodes.new("ShaderNodeVertexColor"), nodes.new("ShaderNodeEmission")
-    colour.layer_name = attribute
-    links = material.node_tree.links
+    colour, shine = _attribute_colour(nodes, attribute), nodes.new("ShaderNodeEmission")
+    links = present(material.node_tree).links
     links.new(colour.outputs["Color"], shine.inputs["Color"])
     links.new(shine.outputs["Emission"], nodes["Material Output"].inputs["Surface"])
     return material
+
+
+def _attribute_colour(nodes: bpy.types.Nodes, attribute: str) -> bpy.types.Node:
+    """Add a node that gives the colours of an attribute."""
+    colour = nodes.new("ShaderNodeVertexColor")
+    assert isinstance(colour, bpy.types.ShaderNodeVertexColor)
+    colour.layer_name = attribute
+    return colour
 
 
 def _nodes(name: str) -> tuple[bpy.types.Material, bpy.types.Nodes]:
@@ -175,30 +201,36 @@ def _nodes(name: str) -> tuple[bpy.types.Material, bpy.types.Nodes]:
     material = bpy.data.materials.new(name)
     if material.node_tree is None:
         material.use_nodes = True
-    return material, material.node_tree.nodes
+    return material, present(material.node_tree).nodes
 
 
 def _set_up(scene: bpy.types.Scene, view: View) -> None:
-    scene.render.engine = "CYCLES"
-    scene.cycles.device = "CPU"
-    scene.cycles.samples = view.samples
-    scene.cycles.use_denoising = True
-    scene.cycles.denoising_prefilter = "FAST"
-    scene.cycles.seed = 0
+    # The stubs know only the engines that are part of Blender itself.
+    scene.render.engine = "CYCLES"  # type: ignore[assignment]
+    cycles = _cycles(scene)
+    cycles.device, cycles.samples, cycles.seed = "CPU", view.samples, 0
+    cycles.use_denoising, cycles.denoising_prefilter = True, "FAST"
     scene.render.film_transparent = True
     scene.render.resolution_x, scene.render.resolution_y = view.width, view.height
     scene.render.image_settings.file_format = "PNG"
     scene.render.image_settings.color_mode = "RGBA"
     # The palette is made for the screen as it is, not for a film look.
-    scene.view_settings.view_transform = "Standard"
-    scene.world = bpy.data.worlds.new("eigenparts picture")
-    if scene.world.node_tree is None:
-        scene.world.use_nodes = True
-    scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.9, 0.95, 1.0, 1.0)
-    scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.6
+    # The stubs know none of the transforms, which Blender reads from a file.
+    present(scene.view_settings).view_transform = "Standard"  # type: ignore[assignment]
+    scene.world = world = bpy.data.worlds.new("eigenparts picture")
+    if world.node_tree is None:
+        world.use_nodes = True
+    background = present(world.node_tree).nodes["Background"]
+    set_input(background, "Color", (0.9, 0.95, 1.0, 1.0))
+    set_input(background, "Strength", 0.6)
 
 
-def _aim(scene: bpy.types.Scene, view: View, positions: np.ndarray) -> bpy.types.Object:
+def _cycles(scene: bpy.types.Scene) -> _Cycles:
+    """Return the settings of the renderer that is an extension itself."""
+    return getattr(scene, CYCLES)
+
+
+def _aim(scene: bpy.types.Scene, view: View, positions: Points) -> bpy.types.Object:
     """Add camera and light to suit what is shown, and the ground below the objects, which is returned."""
     corners = positions if view.framed is None else view.framed
     centre = Vector((corners.min(axis=0) + corners.max(axis=0)) / 2)
@@ -211,7 +243,7 @@ def _aim(scene: bpy.types.Scene, view: View, positions: np.ndarray) -> bpy.types
     return _add_ground(scene, centre, size, float(positions[:, 2].min()))
 
 
-def _add_camera(scene: bpy.types.Scene, view: View, corners: np.ndarray, centre: Vector, turn: Matrix) -> None:
+def _add_camera(scene: bpy.types.Scene, view: View, corners: Points, centre: Vector, turn: Matrix) -> None:
     data = bpy.data.cameras.new("picture")
     data.sensor_fit, data.angle = "VERTICAL", radians(FIELD_OF_VIEW)
     seen = (corners - np.array(centre)) @ np.array(turn.to_3x3())
@@ -221,16 +253,17 @@ def _add_camera(scene: bpy.types.Scene, view: View, corners: np.ndarray, centre:
     distance = float((np.abs(seen[:, :2]) / half + seen[:, 2:]).max())
     data.clip_start, data.clip_end = distance / 100, distance * 100
     camera = bpy.data.objects.new("picture", data)
-    camera.matrix_world = Matrix.Translation(centre) @ turn @ Matrix.Translation((0, 0, distance))
+    camera.matrix_world = Matrix.Translation(centre.to_tuple()) @ turn @ Matrix.Translation((0, 0, distance))
     scene.collection.objects.link(camera)
     scene.camera = camera
 
 
 def _add_light(scene: bpy.types.Scene, centre: Vector, size: float, turn: Matrix) -> None:
     data = bpy.data.lights.new("picture", "SUN")
+    assert isinstance(data, bpy.types.SunLight)
     data.energy, data.angle = 2.4, radians(60)
     light = bpy.data.objects.new("picture", data)
-    light.matrix_world = Matrix.Translation(centre) @ turn @ Matrix.Translation((0, 0, 2 * size))
+    light.matrix_world = Matrix.Translation(centre.to_tuple()) @ turn @ Matrix.Translation((0, 0, 2 * size))
     scene.collection.objects.link(light)
 
 
@@ -246,7 +279,7 @@ def _add_ground(scene: bpy.types.Scene, centre: Vector, size: float, height: flo
     return ground
 
 
-def _taken(scene: bpy.types.Scene, path: Path, hidden: Sequence[bpy.types.Object]) -> np.ndarray:
+def _taken(scene: bpy.types.Scene, path: Path, hidden: Sequence[bpy.types.Object]) -> Pixels:
     """Return what the camera sees, (height, width, 4), without some objects; a file is written on the way."""
     for obj in scene.collection.objects:
         obj.hide_render = obj in hidden
@@ -255,7 +288,7 @@ def _taken(scene: bpy.types.Scene, path: Path, hidden: Sequence[bpy.types.Object
     return _pixels(path)
 
 
-def _faded(pixels: np.ndarray) -> np.ndarray:
+def _faded(pixels: Pixels) -> Pixels:
     """Return a picture whose shadows pass into nothing at its sides."""
     height, width, _ = pixels.shape
     down, across = (
@@ -268,17 +301,17 @@ def _faded(pixels: np.ndarray) -> np.ndarray:
     return faded
 
 
-def _linear(colours: np.ndarray) -> np.ndarray:
+def _linear(colours: Pixels) -> Pixels:
     """Return linear values of those of the screen."""
     return np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
 
 
-def _as_on_screen(values: np.ndarray) -> np.ndarray:
+def _as_on_screen(values: Pixels) -> Pixels:
     """Return values of the screen of linear ones."""
     return np.where(values <= 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
 
 
-def _smooth(share: np.ndarray) -> np.ndarray:
+def _smooth(share: Pixels) -> Pixels:
     """Return values that rise from 0 to 1 as the share does, without corners."""
     share = np.clip(share, 0, 1)
     return share * share * (3 - 2 * share)
@@ -292,7 +325,7 @@ def _take_down(scene: bpy.types.Scene) -> None:
     bpy.data.batch_remove([*objects, *data, *([world] if world else [])])
 
 
-def _over(pixels: np.ndarray, below: np.ndarray | float) -> np.ndarray:
+def _over(pixels: Pixels, below: Pixels | float) -> Pixels:
     """Return a picture laid over another one, or over a grey."""
     laid = np.ones_like(pixels)
     below = below[..., :3] if isinstance(below, np.ndarray) else below
@@ -300,20 +333,20 @@ def _over(pixels: np.ndarray, below: np.ndarray | float) -> np.ndarray:
     return laid
 
 
-def _pixels(path: Path) -> np.ndarray:
+def _pixels(path: Path) -> Pixels:
     """Return (height, width, 4) of an image, bottom row first."""
     image = bpy.data.images.load(str(path))
-    pixels = np.empty(len(image.pixels), dtype=np.float32)
+    width, height = cast(tuple[int, int], image.size)
+    pixels = np.empty(4 * width * height, dtype=np.float32)
     image.pixels.foreach_get(pixels)
-    width, height = image.size
     bpy.data.images.remove(image)
     return pixels.reshape(height, width, 4)
 
 
-def _save(pixels: np.ndarray, path: Path) -> None:
+def _save(pixels: Pixels, path: Path) -> None:
     height, width, _ = pixels.shape
     image = bpy.data.images.new("picture", width, height, alpha=True)
-    image.pixels.foreach_set(np.ascontiguousarray(pixels).ravel())
+    image.pixels.foreach_set(cast(Sequence[float], np.ascontiguousarray(pixels).ravel()))
     image.filepath_raw, image.file_format = str(path), "PNG"
     image.save()
     bpy.data.images.remove(image)

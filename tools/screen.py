@@ -7,6 +7,7 @@ from pathlib import Path
 from shutil import which
 
 import numpy as np
+from numpy.typing import NDArray
 
 # Pixels, and bits for each.
 SIZE = "1600x1000x24"
@@ -20,8 +21,9 @@ class Screen:
         options = ["-fbdir", str(folder), "+extension", "GLX", "-nocursor"]
         command = ["Xvfb", "-displayfd", "1", "-screen", "0", SIZE, *options]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        with self._process.stdout as told:
-            self.name = f":{told.readline().strip()}"
+        assert self._process.stdout is not None
+        with self._process.stdout as answer:
+            self.name = f":{answer.readline().strip()}"
         self._file = folder / "Xvfb_screen0"
 
     @staticmethod
@@ -29,7 +31,7 @@ class Screen:
         """Whether this machine has Xvfb."""
         return which("Xvfb") is not None
 
-    def pixels(self) -> np.ndarray:
+    def pixels(self) -> NDArray[np.uint8]:
         """Return (height, width, 3) uint8 sRGB, top row first."""
         dump = self._file.read_bytes()
         # The header of the X window dump format, in numbers of four bytes.
@@ -45,7 +47,7 @@ class Screen:
         self._process.wait()
 
 
-def write_png(path: Path, pixels: np.ndarray) -> None:
+def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
     """Write (height, width, 3) uint8 as a PNG file."""
     height, width, _ = pixels.shape
     # Rows as differences from those above are smaller; each begins with the number of this filter, 2.

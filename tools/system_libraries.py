@@ -1,4 +1,4 @@
-"""Tell which system libraries Blender misses, and the Debian packages that bring them."""
+"""The system libraries that Blender misses, and the Debian packages that bring them."""
 
 import ctypes
 import re

@@ -10,7 +10,9 @@ import sys
 import time
 from pathlib import Path
 
-from environment import BLENDERS, SetUpError, make_environment
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from tools.environment import BLENDERS, SetUpError, make_environment
 
 ROOT = Path(__file__).parents[1]
 TESTS = ["tests/blender", "tests/cli"]

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tools.screen import Screen, write_png
 
@@ -31,13 +32,20 @@ PATIENCE = 120.0
 
 
 class WindowError(Exception):
-    """What was asked of the application could not be done; the text is its traceback or its last words."""
+    """A failure in the application; the text is its traceback or its last words."""
 
 
 def find_application() -> str | None:
     """Return the path of a Blender with windows, None if there is none."""
     named = os.environ.get(VARIABLE) or shutil.which("blender")
     return named or next((str(path) for pattern in USUAL_PLACES for path in _matches(pattern)), None)
+
+
+def _application() -> str:
+    application = find_application()
+    if application is None:
+        raise WindowError(what_is_missing())
+    return application
 
 
 def what_is_missing() -> str:
@@ -65,12 +73,13 @@ class Window:
         key = secrets.token_bytes(16)
         # If the application dies before it calls, nobody else would end the waiting.
         self._listener = Listener(("localhost", 0), authkey=key)
-        self._listener._listener._socket.settimeout(PATIENCE)
+        # Python's own way to that is private, so that its types leave it out.
+        self._listener._listener._socket.settimeout(PATIENCE)  # type: ignore[attr-defined]
         # Blender does not believe in a folder that is not there, and takes the user's own.
         (folder / "user").mkdir(exist_ok=True)
         own = {"BLENDER_USER_RESOURCES": str(folder / "user"), "PYTHONUNBUFFERED": "1"}
         address = str(self._listener.address[1])
-        command = [find_application(), "--enable-event-simulate", "--python", inside, "--", address, key.hex()]
+        command = [_application(), "--enable-event-simulate", "--python", str(inside), "--", address, key.hex()]
         self.log = folder / "log.txt"
         self._mouse = (0, 0)
         with self.log.open("w") as log:
@@ -140,7 +149,7 @@ class Window:
             self.value("None")
             time.sleep(seconds / 2)
 
-    def pixels(self) -> np.ndarray:
+    def pixels(self) -> NDArray[np.uint8]:
         """Return (height, width, 3) uint8 of the screen, top row first."""
         return self._screen.pixels()
 

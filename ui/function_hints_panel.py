@@ -5,7 +5,8 @@ from bpy.app.translations import pgettext_iface as translated
 
 from ..operators.blender.known_values import present
 from ..operators.blender.registered_settings import analysis_settings
-from ..operators.mesh_state import function_hints
+from ..operators.mesh_state.function_hints import MOST_SHOWN
+from ..operators.mesh_state.state import read
 from .tab import EigenpartsPanel, active_mesh
 
 
@@ -17,12 +18,12 @@ class EIGENPARTS_PT_function_hints(EigenpartsPanel, bpy.types.Panel):
     def poll(cls, context: bpy.types.Context) -> bool:
         mesh = active_mesh(context)
         is_asked = analysis_settings(context).field == "EIGENFUNCTION"
-        return is_asked and mesh is not None and bool(function_hints.read(mesh))
+        return is_asked and mesh is not None and bool(read(mesh).function_hints)
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.layout.column(align=True)
-        hints = function_hints.read(present(active_mesh(context)))
-        for number, n_held, n_protrusions in hints[: function_hints.MOST_SHOWN]:
+        hints = read(present(active_mesh(context))).function_hints
+        for number, n_held, n_protrusions in hints[:MOST_SHOWN]:
             text = translated("{number}: {held} of {all} protrusions").format(
                 number=number, held=n_held, all=n_protrusions
             )

@@ -11,9 +11,10 @@ from ..operators.blender.registered_settings import (
     job_status,
     mesh_settings,
 )
-from ..operators.mesh_state import registration_record, state
+from ..operators.mesh_state.schema import ABSENT, DAMAGED
+from ..operators.mesh_state.state import MeshState, is_analyzed, read
 from ..operators.messages import unexpected_errors
-from ..operators.messages.user_errors import Refusal
+from ..operators.outputs.output_registry import OUTPUTS
 from .analysis_presets import EIGENPARTS_PT_analysis_presets
 from .tab import NO_MESH, EigenpartsPanel, active_mesh, draw_hint, draw_sentence, main_row
 
@@ -70,13 +71,16 @@ class EIGENPARTS_PT_level(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, mesh = self.layout, active_mesh(context)
-        if mesh is not None and not state.is_analyzed(mesh):
+        if mesh is None:
+            layout.label(text=NO_MESH)
+            return
+        state = read(mesh)
+        if state.stored is None:
             draw_hint(layout, FIRST_STEP, present(context.region).width)
         else:
-            layout.label(text=_told(mesh), translate=False)
-        if mesh is not None:
-            _draw_level(layout.column(), mesh)
-            _draw_problems(layout, context, mesh)
+            layout.label(text=_origin_of_parts(state), translate=False)
+        _draw_level(layout.column(), mesh)
+        _draw_problems(layout, context, state)
 
 
 class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
@@ -86,7 +90,7 @@ class EIGENPARTS_PT_parts(EigenpartsPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         mesh = active_mesh(context)
         if mesh is None:
-            self.layout.label(text=_told(mesh), translate=False)
+            self.layout.label(text=NO_MESH)
             return
         settings = mesh_settings(mesh)
         row = self.layout.row()
@@ -104,12 +108,12 @@ class EIGENPARTS_PT_outputs(EigenpartsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         mesh = active_mesh(context)
-        if mesh is None or not state.is_analyzed(mesh):
-            self.layout.label(text=_told(mesh), translate=False)
+        if mesh is None or not is_analyzed(mesh):
+            self.layout.label(text=NO_MESH if mesh is None else ABSENT)
         if mesh is None:
             return
         column = self.layout.column()
-        column.enabled = state.is_analyzed(mesh)
+        column.enabled = is_analyzed(mesh)
         _draw_outputs(column, mesh_settings(mesh))
         column = self.layout.column(align=True)
         cuts = column.row(align=True)
@@ -129,7 +133,7 @@ def _draw_field(layout: bpy.types.UILayout, settings: AnalysisSettings, mesh: bp
 
 
 def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
-    layout.enabled = state.is_analyzed(mesh)
+    layout.enabled = is_analyzed(mesh)
     settings = mesh_settings(mesh)
     layout.row().prop(settings, "mode", expand=True)
     column = layout.column(align=True)
@@ -138,44 +142,33 @@ def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
     column.operator("eigenparts.segment", text="Default Level", icon="LOOP_BACK")
 
 
-def _draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, mesh: bpy.types.Mesh) -> None:
+def _draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, state: MeshState) -> None:
     """Say what is wrong with what the mesh remembers, and what the last change met."""
     status = job_status(context)
-    if state.is_analyzed(mesh) and _summary(mesh) is None:
-        draw_sentence(layout, state.DAMAGED, present(context.region).width)
-    if status.problem and status.problem_of == mesh.name_full:
+    if state.stored is not None and not state.is_readable:
+        draw_sentence(layout, DAMAGED, present(context.region).width)
+    if status.problem and status.problem_of == state.mesh.name_full:
         draw_sentence(layout, status.problem, present(context.region).width)
 
 
-def _told(mesh: bpy.types.Mesh | None) -> str:
-    """Return where the parts come from, or why there are none."""
-    if mesh is None:
-        return translated(NO_MESH)
-    match, summary = registration_record.read(mesh), _summary(mesh)
-    if match is not None:
-        return translated("Parts of {name}").format(name=match.reference)
-    if summary is None:
-        return translated(state.ABSENT)
+def _origin_of_parts(state: MeshState) -> str:
+    """Return where the parts of a mesh come from, or why there are none."""
+    if state.match is not None:
+        return translated("Parts of {name}").format(name=state.match.reference)
+    if not state.is_readable:
+        return translated(ABSENT)
     return translated("{field}, levels 0 to {highest}").format(
-        field=translated(summary.description), highest=summary.n_levels - 1
+        field=translated(state.summary.description), highest=state.highest_level
     )
 
 
-def _summary(mesh: bpy.types.Mesh) -> state.Summary | None:
-    try:
-        return state.summarize(mesh)
-    except Refusal:
-        return None
-
-
 def _draw_outputs(column: bpy.types.UILayout, settings: MeshSettings) -> None:
-    for name in ("vertex_attribute", "corner_colors", "face_sets", "vertex_groups"):
-        column.prop(settings, name)
-    softness = column.row()
-    softness.active = settings.vertex_groups
-    softness.prop(settings, "softness")
-    column.prop(settings, "materials")
-    column.prop(settings, "field")
+    for output in OUTPUTS.values():
+        column.prop(settings, output.property_name)
+        for option in output.options:
+            row = column.row()
+            row.active = getattr(settings, output.property_name)
+            row.prop(settings, option)
     column.operator("eigenparts.write_eigenfunctions", text="Eigenfunctions")
 
 

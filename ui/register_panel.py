@@ -4,7 +4,8 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ..operators.blender.known_values import present
-from ..operators.mesh_state import registration_record
+from ..operators.mesh_state.references import registered_objects
+from ..operators.mesh_state.registration_record import SURE, Match
 from .tab import EigenpartsPanel, draw_direction, main_row
 
 FUNCTIONS_IN_A_ROW = 4
@@ -22,17 +23,18 @@ class EIGENPARTS_PT_register(EigenpartsPanel, bpy.types.Panel):
         if row is not None:
             present(row.operator("eigenparts.register_selected", icon="LINKED")).mirrored = False
             present(row.operator("eigenparts.register_selected", text="", icon="MOD_MIRROR")).mirrored = True
-        for obj, match in registration_record.registered_objects(context):
+        for obj, state in registered_objects(context):
+            match = present(state.match)
             header, body = layout.panel(f"eigenparts_match_{obj.session_uid}", default_closed=True)
             _draw_confidence(header, obj.name, match)
             if body is not None:
                 _draw_match(body, obj.name, match)
 
 
-def _draw_confidence(layout: bpy.types.UILayout, name: str, match: registration_record.Match) -> None:
+def _draw_confidence(layout: bpy.types.UILayout, name: str, match: Match) -> None:
     layout.label(
         text=f"{name}  {match.confidence:.0%}",
-        icon="CHECKMARK" if match.confidence > registration_record.SURE else "QUESTION",
+        icon="CHECKMARK" if match.confidence > SURE else "QUESTION",
         translate=False,
     )
     if match.n_alternatives:
@@ -43,7 +45,7 @@ def _draw_confidence(layout: bpy.types.UILayout, name: str, match: registration_
         present(button).object_name = name
 
 
-def _draw_match(layout: bpy.types.UILayout, name: str, match: registration_record.Match) -> None:
+def _draw_match(layout: bpy.types.UILayout, name: str, match: Match) -> None:
     told = translated("Same faces as {name}") if match.same_topology else translated("Functions of {name}")
     layout.label(text=told.format(name=match.reference), translate=False)
     grid = layout.grid_flow(row_major=True, columns=FUNCTIONS_IN_A_ROW, even_columns=True, align=True)

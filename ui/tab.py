@@ -1,4 +1,4 @@
-"""What the panels of the sidebar tab have in common."""
+"""The sidebar tab: the base of its panels, and rows and texts that several of them draw."""
 
 import bpy
 from bpy.app.translations import pgettext_iface as translated
@@ -6,7 +6,9 @@ from bpy.app.translations import pgettext_iface as translated
 from ..operators.blender.known_values import mesh_of, present
 from ..operators.blender.mixins import PanelMixin
 from ..operators.blender.registered_settings import job_status
-from ..operators.mesh_state import state
+from ..operators.mesh_data.selected_meshes import other_meshes
+from ..operators.mesh_state.schema import ABSENT
+from ..operators.mesh_state.state import is_analyzed
 from ..operators.messages.sentences import in_language
 
 # What is said where there is nothing to show yet.
@@ -41,12 +43,12 @@ def active_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
 def analyzed_mesh(context: bpy.types.Context) -> bpy.types.Mesh | None:
     """Return the active mesh if it is analyzed."""
     mesh = active_mesh(context)
-    return mesh if mesh is not None and state.is_analyzed(mesh) else None
+    return mesh if mesh is not None and is_analyzed(mesh) else None
 
 
 def draw_missing_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Say why the panel is empty."""
-    layout.label(text=NO_MESH if active_mesh(context) is None else state.ABSENT)
+    layout.label(text=NO_MESH if active_mesh(context) is None else ABSENT)
 
 
 def main_row(panel: EigenpartsPanel, context: bpy.types.Context) -> bpy.types.UILayout | None:
@@ -69,12 +71,6 @@ def draw_direction(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
         return
     text = translated("{source} to {target}") if len(others) == 1 else translated("{source} to {count} others")
     layout.label(text=text.format(source=source.name, target=others[0].name, count=len(others)), translate=False)
-
-
-def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Return the selected mesh objects that share no mesh with the active object."""
-    active = context.object
-    return [obj for obj in context.selected_objects if obj.type == "MESH" and (not active or obj.data != active.data)]
 
 
 def draw_sentence(layout: bpy.types.UILayout, sentence: str, width: int) -> None:

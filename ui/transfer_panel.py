@@ -3,7 +3,8 @@
 import bpy
 
 from ..operators.blender.registered_settings import transfer_settings
-from .tab import EigenpartsPanel, draw_direction, main_row, other_meshes
+from ..operators.mesh_data.selected_meshes import other_meshes
+from .tab import EigenpartsPanel, draw_direction, main_row
 from .transfer_presets import EIGENPARTS_PT_transfer_presets
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..choices import BOUNDARIES
 from ..errors import SpectrumError
 from ..progress import Progress, silent
 from ..surface.cleaning import Surface, clean_surface
@@ -13,8 +14,6 @@ from .assembly import mass_matrix
 from .degenerate import fixed_basis
 from .eigensolver import eigen_problem, lowest_eigenpairs
 from .space import FunctionSpace, function_space
-
-BOUNDARIES = ("neumann", "dirichlet")
 
 # In units of 1 / area; smaller eigenvalues are lost in round-off. A needle of proportion 1 to 1e6 has 1e-5.
 LEAST_VALUE = 1e-10

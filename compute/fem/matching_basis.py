@@ -14,6 +14,21 @@ MATCHING_FUNCTIONS = 100
 MATCHING_UNKNOWNS = 3000
 
 
+class MatchingBasis:
+    """The eigenfunctions that a surface is matched by: solved for when they are first asked for, and kept."""
+
+    def __init__(self, surface: Surface, shown: Eigenbasis | None) -> None:
+        self._surface = surface
+        self._shown = shown
+        self._solved: Eigenbasis | None = None
+
+    def solve(self, progress: Progress) -> Eigenbasis:
+        """Return the eigenfunctions; ``progress`` is called if they have to be computed."""
+        if self._solved is None:
+            self._solved = solve_for_matching(self._surface, self._shown, progress)
+        return self._solved
+
+
 def solve_for_matching(surface: Surface, shown: Eigenbasis | None, progress: Progress) -> Eigenbasis:
     """Return free eigenfunctions of a surface, with the signs of those that the user sees, if there are any."""
     order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)

@@ -78,7 +78,7 @@ def _diffusion(
     basis = solve_on_surface(
         surface, n_functions, order=chosen.order, boundary=boundary, largest_ratio=largest_ratio, progress=progress
     )
-    return ChosenField(diffusion_field(basis), basis, _told(chosen))
+    return ChosenField(diffusion_field(basis), basis, _warnings_of(chosen))
 
 
 def _eigenfunction(
@@ -87,8 +87,8 @@ def _eigenfunction(
     chosen = resolved_order(order, surface)
     n_functions = max(n_functions or min(DEFAULT_FUNCTIONS, n_available(surface, boundary)), number)
     basis = solve_on_surface(surface, n_functions, order=chosen.order, boundary=boundary, progress=progress)
-    return ChosenField(eigenfunction_field(basis, number), basis, _told(chosen))
+    return ChosenField(eigenfunction_field(basis, number), basis, _warnings_of(chosen))
 
 
-def _told(chosen: OrderChoice) -> tuple[str, ...]:
+def _warnings_of(chosen: OrderChoice) -> tuple[str, ...]:
     return () if chosen.warning is None else (chosen.warning,)

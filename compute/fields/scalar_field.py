@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..choices import FIELDS
 from ..errors import FieldError
 from ..fem.eigenbasis import Eigenbasis
 from ..fem.lagrange import reference_element
@@ -13,7 +14,7 @@ from ..surface.cleaning import Surface
 from ..surface.mesh import Floats, Ints
 from ..surface.ties import evened
 
-DIFFUSION = "diffusion"
+DIFFUSION = FIELDS[0]
 # Functions used by the diffusion field, at the most.
 DIFFUSION_FUNCTIONS = 30
 # Time of the diffusion in units of 1 / (first eigenvalue); 1 gave the best parts on the Princeton benchmark.

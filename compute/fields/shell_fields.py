@@ -43,18 +43,18 @@ def choose_fields(
     net = _net(surface, chosen.order if has_elements else 1)
     values = np.zeros(len(net.positions))
     solve = partial(choose_field, choice=choice, n_functions=n_functions, order=chosen.order, boundary=boundary)
-    found, problems = [], []
+    fields, problems = [], []
     for corners, result in _solved(surface, net, solve, progress):
         if isinstance(result, EngineError):
             problems.append(result)
         else:
             values[corners] = _from_0_to_1(result.field)
-            found.append(result)
-    if not found:
+            fields.append(result)
+    if not fields:
         raise problems[0] if problems else MeshError("No loose part has enough faces to be divided by itself.")
-    joint = replace(found[0].field, values=evened(values), net=net, least_range=0.0)
+    joint = replace(fields[0].field, values=evened(values), net=net, least_range=0.0)
     slow = (chosen.warning,) if has_elements and chosen.warning else ()
-    return ChosenField(joint, None, (*slow, *_told(problems)))
+    return ChosenField(joint, None, (*slow, *_warnings_of(problems)))
 
 
 def _solved(
@@ -65,25 +65,25 @@ def _solved(
     n_shells = int(shell.max()) + 1
     corners = net.triangles.reshape(len(shell), -1, 3)
     for number in range(n_shells):
-        is_own = shell == number
-        if np.count_nonzero(is_own) < LEAST_TRIANGLES:
+        is_inside = shell == number
+        if np.count_nonzero(is_inside) < LEAST_TRIANGLES:
             continue
-        told = section(progress, number / n_shells, (number + 1) / n_shells)
-        yield corners[is_own].reshape(-1, 3), _attempt(partial(solve, progress=told), surface, is_own)
+        step = section(progress, number / n_shells, (number + 1) / n_shells)
+        yield corners[is_inside].reshape(-1, 3), _attempt(partial(solve, progress=step), surface, is_inside)
 
 
-def _attempt(solve: Callable[[Surface], ChosenField], surface: Surface, is_own: Bools) -> ChosenField | EngineError:
+def _attempt(solve: Callable[[Surface], ChosenField], surface: Surface, is_inside: Bools) -> ChosenField | EngineError:
     """Return the field of a shell, or what is wrong with it: others may have one all the same."""
     try:
-        return solve(_alone(surface, is_own))
+        return solve(_alone(surface, is_inside))
     except EngineError as error:
         return error
 
 
-def _alone(surface: Surface, is_own: Bools) -> Surface:
-    """Return one shell to be solved on; its way back to the input is that of all."""
-    mesh = TriangleMesh(surface.mesh.vertices, surface.mesh.triangles[is_own])
-    return replace(surface, mesh=mesh, input_triangle=surface.input_triangle[is_own], is_apart=False)
+def _alone(surface: Surface, is_inside: Bools) -> Surface:
+    """Return one shell to be solved on; its map back to the input is that of all."""
+    mesh = TriangleMesh(surface.mesh.vertices, surface.mesh.triangles[is_inside])
+    return replace(surface, mesh=mesh, input_triangle=surface.input_triangle[is_inside], is_apart=False)
 
 
 def _net(surface: Surface, order: int) -> Net:
@@ -100,7 +100,7 @@ def _from_0_to_1(field: ScalarField) -> Floats:
     return (values - values.min()) / field.value_range
 
 
-def _told(problems: list[EngineError]) -> tuple[str, ...]:
+def _warnings_of(problems: list[EngineError]) -> tuple[str, ...]:
     if not problems:
         return ()
     return (f"{len(problems)} of the loose parts could not be divided by themselves: {problems[0]}",)

@@ -12,7 +12,7 @@ from .ranked_net import RankedNet
 
 
 class Kind(IntEnum):
-    """What happens to the sublevel set at a critical point."""
+    """Kinds of critical points, by the change of the sublevel set."""
 
     MINIMUM = 0
     SADDLE = 1

@@ -25,9 +25,18 @@ class PersistenceDiagram:
         (value at which the loop is first met from below, value at which it is first met from above); twice the genus
         of a closed orientable surface.
 
+    All values have the unit of the field.
+
     References
     ----------
-    .. [1] Reuter, IJCV 2010, section 3.3.
+    .. [1] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+       Eigenfunctions", IJCV 2010, section 3.3.
+
+    Examples
+    --------
+    >>> diagram = analysis.diagram
+    >>> diagram.points.shape, diagram.components.shape, diagram.loops.shape
+    ((5, 2), (1, 2), (0, 2))
     """
 
     points: Floats
@@ -55,7 +64,17 @@ class PersistenceDiagram:
         return self.points[self.points[:, 0] > self.points[:, 1]]
 
     def negated(self) -> "PersistenceDiagram":
-        """Return the diagram of the negated field: the points mirrored at the origin."""
+        """Return the diagram of the negated field: the points mirrored at the origin.
+
+        Returns
+        -------
+        PersistenceDiagram
+
+        Examples
+        --------
+        >>> len(analysis.diagram.negated().minima) == len(analysis.diagram.maxima)
+        True
+        """
         # Adding zero keeps a value of 0 from becoming -0.
         return PersistenceDiagram(-self.points + 0.0, -self.components[:, ::-1] + 0.0, -self.loops[:, ::-1] + 0.0)
 
@@ -64,6 +83,20 @@ class PersistenceDiagram:
 
         What never dies has the death inf. With boundary this holds in dimension 0 only: what maxima are paired with
         there are the relative intervals of extended persistence.
+
+        Parameters
+        ----------
+        dimension : 0, 1 or 2
+            Components, loops or enclosed volumes.
+
+        Returns
+        -------
+        (n, 2) float64
+
+        Examples
+        --------
+        >>> analysis.diagram.intervals(2)[0, 1]
+        inf
         """
         if dimension == 0:
             return np.concatenate([self.minima, _endless(self.components[:, 0])])
@@ -76,6 +109,20 @@ class PersistenceDiagram:
 
         gudhi calls the extended ones Extended+ where birth <= death, and Extended- otherwise. On a closed surface the
         ordinary ones of dimension 1 are the relative ones of dimension 1 with their ends exchanged, and so on.
+
+        Returns
+        -------
+        ordinary, relative, extended_components, extended_loops : (n, 2) float64
+            Each with its own number of rows.
+
+        References
+        ----------
+        .. [1] Cohen-Steiner, Edelsbrunner, Harer, "Extending persistence using Poincare and Lefschetz duality", 2009.
+
+        Examples
+        --------
+        >>> [len(intervals) for intervals in analysis.diagram.extended_intervals()]
+        [1, 4, 1, 0]
         """
         return self.minima, self.maxima, self.components, self.loops
 
@@ -102,10 +149,22 @@ def size_function(diagram: PersistenceDiagram, x: ArrayLike, y: ArrayLike) -> In
     diagram : PersistenceDiagram
         Of the field h.
     x, y : float or arrays of one shape
+        In the unit of the field.
+
+    Returns
+    -------
+    int64 array of that shape
 
     References
     ----------
-    .. [1] Reuter, IJCV 2010, section 3.3, equation 16.
+    .. [1] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+       Eigenfunctions", IJCV 2010, section 3.3, equation 16.
+
+    Examples
+    --------
+    >>> lowest, highest = analysis.diagram.components[0]
+    >>> int(size_function(analysis.diagram, lowest, highest))
+    1
     """
     x, y = np.broadcast_arrays(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64))
     births, deaths = diagram.intervals(0).T
@@ -113,7 +172,29 @@ def size_function(diagram: PersistenceDiagram, x: ArrayLike, y: ArrayLike) -> In
 
 
 def persistence_curve(diagram: PersistenceDiagram) -> tuple[Floats, Ints]:
-    """Return each persistence that occurs, rising, and how many pairs have at least that much."""
+    """Return each persistence that occurs, rising, and the number of pairs that have at least that much.
+
+    Parameters
+    ----------
+    diagram : PersistenceDiagram
+
+    Returns
+    -------
+    persistence : (n,) float64
+        In the unit of the field.
+    n_pairs : (n,) int64
+
+    References
+    ----------
+    .. [1] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+       Eigenfunctions", IJCV 2010, section 4.3.
+
+    Examples
+    --------
+    >>> persistence, n_pairs = persistence_curve(analysis.diagram)
+    >>> n_pairs.tolist()
+    [5, 4, 3, 2, 1]
+    """
     persistence = np.sort(diagram.persistence)
     return persistence, np.arange(len(persistence), 0, -1)
 

@@ -21,8 +21,15 @@ def diagram_distance(first: PersistenceDiagram, second: PersistenceDiagram, metr
 
     Parameters
     ----------
+    first, second : PersistenceDiagram
+        In one unit.
     metric : "hausdorff" or "bottleneck"
-        How far the worst point is from its nearest one, or from its own one in the best matching.
+        The distance of the worst point from its nearest one, or from its own one in the best matching.
+
+    Returns
+    -------
+    float
+        In the unit of the field.
 
     Raises
     ------
@@ -31,7 +38,13 @@ def diagram_distance(first: PersistenceDiagram, second: PersistenceDiagram, metr
 
     References
     ----------
-    .. [1] Reuter, IJCV 2010, section 4.5; the maximum norm of its footnote 8 lacks the absolute values.
+    .. [1] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+       Eigenfunctions", IJCV 2010, section 4.5; the maximum norm of its footnote 8 lacks the absolute values.
+
+    Examples
+    --------
+    >>> diagram_distance(analysis.diagram, analysis.diagram, "bottleneck")
+    0.0
     """
     if metric == "hausdorff":
         return hausdorff_distance(first.points, second.points)
@@ -69,7 +82,7 @@ def bottleneck_distance(first: Floats, second: Floats) -> float:
 
 
 def _can_match(first: Floats, second: Floats, radius: float) -> bool:
-    """Whether all points farther than the radius from the diagonal find partners within it.
+    """Return whether all points farther than the radius from the diagonal find partners within it.
 
     If those of either diagram can be matched by themselves, they can be matched together (Mendelsohn, Dulmage 1958).
     """

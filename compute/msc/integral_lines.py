@@ -38,7 +38,7 @@ class Ascent:
 
 @dataclass(frozen=True, eq=False)
 class Exits:
-    """The ways out of vertices, across a triangle or along an edge; r rows.
+    """Exits of vertices, across a triangle or along an edge; r rows.
 
     Attributes
     ----------

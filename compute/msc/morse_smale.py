@@ -102,6 +102,20 @@ class MorseSmaleComplex:
     topology : FieldTopology
     n_cancelled : int
         How many pairs are cancelled, those of least persistence.
+
+    References
+    ----------
+    .. [1] Edelsbrunner, Harer, Zomorodian, "Hierarchical Morse-Smale complexes for piecewise linear 2-manifolds", 2003.
+    .. [2] Reuter, "Hierarchical Shape Segmentation and Registration via Topological Features of Laplace-Beltrami
+       Eigenfunctions", IJCV 2010, sections 3.3 and 4.2.
+
+    Examples
+    --------
+    >>> morse_smale = analysis.complex
+    >>> morse_smale.euler_characteristic
+    2
+    >>> len(morse_smale.cells) == len(morse_smale.separatrices) // 2
+    True
     """
 
     topology: FieldTopology
@@ -158,16 +172,62 @@ class MorseSmaleComplex:
         return build_reeb_graph(known.values, known.net, critical)
 
     def level_lines(self, height: float) -> list[Floats]:
-        """Return the level set of the field at a height as polylines, (q, 3) each."""
+        """Return the level set of the field at a height.
+
+        Parameters
+        ----------
+        height : float
+            In the unit of the field.
+
+        Returns
+        -------
+        list of (q, 3) float64
+            Polylines in the mesh's unit of length; closed ones end at the point they start from.
+
+        Examples
+        --------
+        >>> len(analysis.complex.level_lines(0.0))
+        5
+        """
         known = self.topology
         return level_set(known.links, known.positions, known.values, height).lines()
 
     def simplified(self, n_pairs: int) -> "MorseSmaleComplex":
-        """Return the complex with the ``n_pairs`` most persistent pairs, all others cancelled."""
+        """Return the complex with the most persistent pairs, all others cancelled.
+
+        Parameters
+        ----------
+        n_pairs : int
+            How many are kept.
+
+        Returns
+        -------
+        MorseSmaleComplex
+
+        Examples
+        --------
+        >>> sorted(analysis.complex.simplified(0).critical_points.kind.tolist())
+        [0, 2]
+        """
         return replace(self, n_cancelled=max(len(self.pairing) - max(n_pairs, 0), 0))
 
     def above(self, persistence: float) -> "MorseSmaleComplex":
-        """Return the complex with the pairs of at least this persistence, in the unit of the field."""
+        """Return the complex with the pairs of at least some persistence.
+
+        Parameters
+        ----------
+        persistence : float
+            In the unit of the field.
+
+        Returns
+        -------
+        MorseSmaleComplex
+
+        Examples
+        --------
+        >>> analysis.complex.above(np.inf).n_cancelled
+        5
+        """
         of_pairs = self.pairing.persistence
         margin = ROUNDING * of_pairs.max(initial=0.0)
         return self.simplified(int((of_pairs >= persistence - margin).sum()))

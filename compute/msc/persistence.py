@@ -146,7 +146,7 @@ def _as_integers(rows: NDArray[np.uint64]) -> list[int]:
     return [int.from_bytes(row.tobytes(), sys.byteorder) for row in np.ascontiguousarray(rows[:, ::_WORD_ORDER])]
 
 
-# Which way to read 64-bit words, so that the first one holds the lowest bits of a long integer.
+# The order in which 64-bit words are read, so that the first one holds the lowest bits of a long integer.
 _WORD_ORDER = 1 if sys.byteorder == "little" else -1
 
 

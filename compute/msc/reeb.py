@@ -1,4 +1,4 @@
-"""The Reeb graph: how the components of the level sets appear, split, merge and vanish."""
+"""The Reeb graph of the level sets of a field: their components appear, split, merge and vanish at its nodes."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,6 +29,12 @@ class ReebGraph:
         The arc that the middle level of each net triangle lies on.
     arc_of_vertex : (n,) int64
         The arc of each net vertex; -1 for nodes and for vertices in no triangle.
+
+    Examples
+    --------
+    >>> graph = reeb_graph(analysis)
+    >>> graph.n_components
+    1
     """
 
     vertex: Ints
@@ -270,9 +276,9 @@ def _arc_of_vertex(net: RankedNet, slices: _Slices, piece: Ints, arcs: _Chains) 
     triangle[net.links.triangles.ravel()] = np.repeat(np.arange(len(net.links.triangles)), 3)
     vertex = np.flatnonzero((triangle >= 0) & (_node_at_rank(net, slices)[net.rank] < 0))
     level = np.searchsorted(slices.levels, net.rank[vertex]) - 1
-    found = np.full(net.n_vertices, -1)
-    found[vertex] = arcs.at(piece[slices.at(triangle[vertex], level)], level)
-    return found
+    arc = np.full(net.n_vertices, -1)
+    arc[vertex] = arcs.at(piece[slices.at(triangle[vertex], level)], level)
+    return arc
 
 
 def _components(n: int, left: Ints, right: Ints) -> tuple[int, Ints]:

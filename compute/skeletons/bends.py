@@ -1,4 +1,4 @@
-"""Where a limb has joints: at necks, at bends of one or more poses, and between them where it is long and straight."""
+"""Joints along a limb: at necks, at bends of one or more poses, and between them where it is long and straight."""
 
 from dataclasses import dataclass
 
@@ -7,9 +7,9 @@ import numpy as np
 from ..surface.mesh import Floats, Ints
 from ..surface.ties import first_least
 
-# Points a limb is looked at in.
+# Points of the middle line of a limb.
 N_POINTS = 48
-# How often neighbours are averaged: on coarse meshes slices come in whole rings of triangles, which blurs girths most.
+# Rounds of averaging: on coarse meshes slices come in whole rings of triangles, which blurs girths most.
 PLACE_ROUNDS, GIRTH_ROUNDS = 3, 8
 # What a joint must save of a limb's deviation from its bones: the integral along the limb of the squared distance,
 # all lengths in radii of the limb. A bend of 30 degrees in the middle of a limb of ten radii saves 5.5.
@@ -45,7 +45,7 @@ class Curve:
 def resampled(places: Floats, radius: Floats) -> tuple[Curve, Floats]:
     """Return a curve through points (P, n, 3), smoothed and evenly spaced, and the length (n,) up to each of them.
 
-    The first and the last point are no slices but what the limb runs between: the way there is not smoothed.
+    The first and the last point are no slices but the ends of the limb, up to which nothing is smoothed.
     """
     smooth = np.concatenate([places[:, :1], _averaged(places[:, 1:-1], PLACE_ROUNDS), places[:, -1:]], axis=1)
     steps = np.linalg.norm(np.diff(smooth[0], axis=0), axis=1)
@@ -69,9 +69,9 @@ def joints_along(curve: Curve, fixed: Ints, n_pieces: int = 1) -> Ints:
         Bones that a long straight stretch is divided into.
     """
     joints = fixed
-    for found in (_necks, _bends):
+    for joints_within in (_necks, _bends):
         spans = zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True)
-        joints = np.unique(np.concatenate([joints, *(found(curve, *span) for span in spans)]))
+        joints = np.unique(np.concatenate([joints, *(joints_within(curve, *span) for span in spans)]))
     joints = _spaced(curve, joints, fixed)
     spans = zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True)
     return np.unique(np.concatenate([joints, *(_pieces(curve, *span, n_pieces) for span in spans)]))
@@ -107,10 +107,10 @@ def _bends(curve: Curve, start: int, end: int) -> Ints:
         total = least[:point] + cost[:point, point] + BEND
         before[point] = first_least(total)
         least[point] = total[before[point]]
-    found = [n - 1]
-    while found[-1] > 0:
-        found.append(int(before[found[-1]]))
-    inner = [start + point for point in found[-2:0:-1] if not _is_near(curve, start, start + point, end)]
+    path = [n - 1]
+    while path[-1] > 0:
+        path.append(int(before[path[-1]]))
+    inner = [start + point for point in path[-2:0:-1] if not _is_near(curve, start, start + point, end)]
     return np.array(inner, dtype=np.int64)
 
 
@@ -134,7 +134,7 @@ def _deviations(curve: Curve, start: int, end: int) -> Floats:
 
 
 def _pieces(curve: Curve, start: int, end: int, n_pieces: int) -> Ints:
-    """Return the joints that divide a straight bone evenly, if it is long; where it bends a little, rather there."""
+    """Return the joints that divide a straight bone evenly, if it is long; at slight bends if there are any."""
     length = curve.along[end] - curve.along[start]
     if length <= SLENDER * float(np.median(curve.radius[start : end + 1])):
         return np.zeros(0, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""The Reeb graph cleared of what is no limb: chains of slices between hubs and tips."""
+"""The Reeb graph cleared of all that is no limb: chains of slices between hubs and tips."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Chain:
 
 
 def chains_between(graph: ReebGraph, slices: Slices, tips: set[int]) -> list[Chain]:
-    """Return what is left of a Reeb graph when all leaves but the wanted tips are taken off, again and again.
+    """Return the chains of a Reeb graph from which all leaves but the wanted tips are taken off, again and again.
 
     Where a chain only passes through a node, it goes on; loops stay.
     """

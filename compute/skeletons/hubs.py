@@ -1,4 +1,4 @@
-"""Hubs: where limbs meet. Nodes of the graph that lie within each other's flesh are one."""
+"""Hubs, at which limbs meet. Nodes of the graph that lie within each other's flesh are one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

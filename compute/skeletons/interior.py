@@ -1,4 +1,4 @@
-"""The inside of a surface: which points lie there, and the nearest place in the middle of the flesh."""
+"""The inside of a surface: the points that lie in it, and the nearest place in the middle of the flesh."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -92,7 +92,7 @@ class Interior:
         return touching + radius[:, None] * inward, radius
 
     def holds(self, points: Floats) -> Bools:
-        """Tell (p,) which points lie inside, by the crossings of three rays each; two of them decide."""
+        """Return (p,) the mask of the points inside, by the crossings of three rays each; two of them decide."""
         return np.sum([shadow.crossings(points) % 2 for shadow in self._shadows], axis=0) >= 2
 
     @cached_property
@@ -129,7 +129,7 @@ class _Shadow:
         return cls(frame, seen, low, np.maximum(np.maximum(first, second), third))
 
     def crossings(self, points: Floats) -> Ints:
-        """Return how many triangles the ray from each point meets."""
+        """Return (p,) the number of triangles that the ray from each point meets."""
         counts = []
         for x, y, z in points @ self.frame.T:
             near = np.flatnonzero((self.low[0] <= x) & (x <= self.high[0]))
@@ -139,7 +139,7 @@ class _Shadow:
 
 
 def _n_above(corners: Floats, place: Floats, height: float) -> int:
-    """Return how many triangles lie straight above a point, the third coordinate being up."""
+    """Return the number of triangles straight above a point, the third coordinate being up."""
     flat = corners[:, :, :2] - place
     weights = np.stack([_turn(flat[:, k - 2], flat[:, k - 1]) for k in range(3)], axis=1)
     around = (weights > 0).all(axis=1) | (weights < 0).all(axis=1)

@@ -1,4 +1,4 @@
-"""Which bones a skeleton has, told by parts, so that a registered shape can be given the same ones."""
+"""The pattern of a skeleton's bones in terms of parts, so that a registered shape can be given the same bones."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..surface.mesh import Floats, Ints
 from .branching import Chain
 from .hubs import Hub, hub_numbers
@@ -24,9 +24,9 @@ class LimbLayout:
     Attributes
     ----------
     joints : tuple of float
-        Share of the way along the limb at which each joint lies, from 0 to 1.
+        Share of the limb's length at which each joint lies, from 0 to 1.
     borders : tuple of float
-        Share of the way at which the limb passes into another part.
+        Share of the length at which the limb passes into another part.
     parts : tuple of int
         Each bone lies in.
     has_carrier : bool
@@ -159,7 +159,7 @@ def with_layout(traces: list[Trace], sides: list[tuple[Tips, Tips]], layout: Bon
 
 
 def _laid_out(trace: Trace, layout: LimbLayout) -> Trace:
-    """Return a trace with joints at the same share of the way between the borders of parts."""
+    """Return a trace with joints at the same share of the length between the borders of parts."""
     last = len(trace.curve.along) - 1
     share = np.array(layout.joints)
     borders: Floats = trace.borders / last

@@ -28,7 +28,7 @@ class Limb:
     start, end : int
         Hubs; the end is -1 for a tip.
     joints : (n, 3) float64
-        Where the bones end, the first hub left out.
+        The ends of the bones, the first hub left out.
     radius, part : (n,)
         Of each bone's end, and the part each bone lies in.
     slices : (s,) int64
@@ -48,7 +48,7 @@ class Limb:
 
 @dataclass(frozen=True, eq=False)
 class Ends:
-    """What a chain runs between.
+    """The two ends of a chain.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ class Trace:
 
 
 def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_pieces: int) -> Trace:
-    """Return the middle line of a chain and where it has joints.
+    """Return the middle line of a chain with the joints on it.
 
     Parameters
     ----------
@@ -118,7 +118,15 @@ def trace_limb(chain: Chain, ends: Ends, slices: Slices, centres: Floats, n_piec
     borders = _borders(chain, ends, slices, places, radius)
     at_borders = np.setdiff1d(point[borders], [0, last])
     joints = joints_along(curve, np.concatenate([[0], at_borders, [last]]), n_pieces)
-    return Trace(chain, ends, curve, joints, bool((borders == 1).any()), point[1:-1], at_borders)
+    return Trace(
+        chain=chain,
+        ends=ends,
+        curve=curve,
+        joints=joints,
+        has_carrier=bool((borders == 1).any()),
+        point_of_slice=point[1:-1],
+        borders=at_borders,
+    )
 
 
 def with_equal_joints(traces: list[Trace], slices: Slices, partner: Ints) -> list[Trace]:
@@ -150,13 +158,21 @@ def lay_limb(trace: Trace, slices: Slices) -> Limb:
     for first in (np.flatnonzero(part[1:] != part[:-1]) + 1).tolist():
         if part[first - 1] == ends.parts[0]:
             places[first] = _deeper(curve, *joints[first - 1 : first + 2].tolist())
-    return Limb(ends.start, ends.end, places[1:], curve.radius[joints[1:]], part, chain.slices, bone)
+    return Limb(
+        start=ends.start,
+        end=ends.end,
+        joints=places[1:],
+        radius=curve.radius[joints[1:]],
+        part=part,
+        slices=chain.slices,
+        bone_of_slice=bone,
+    )
 
 
 def _deeper(curve: Curve, before: int, joint: int, following: int) -> Floats:
-    """Return where a limb turns that comes free of its hub's part at a joint: deeper, along its own axis."""
+    """Return the place about which a limb turns that leaves its hub's part at a joint: deeper, along its axis."""
     place = curve.places[0, joint]
-    # Its own axis shows a little further out, where nothing of the body is left.
+    # The axis of the limb shows a little further out, where nothing of the body is left.
     beyond = np.searchsorted(curve.along, curve.along[joint] + 2 * curve.radius[joint])
     axis = curve.places[0, min(int(beyond), following)] - place
     depth = min(DEPTH * float(curve.radius[joint]), MOST_OF_WAY * _gap(curve.places[0, before], place))
@@ -167,13 +183,13 @@ def _borders(chain: Chain, ends: Ends, slices: Slices, places: Floats, radius: F
     """Return the points, counted from the start of the chain, at which it passes into another part."""
     part = slices.part[chain.slices]
     changes = np.flatnonzero(np.diff(part)) + 2
-    found = [int(change) for change in changes]
+    borders = [int(change) for change in changes]
     is_limb = ends.end < 0 or part[0] != ends.parts[0]
     if is_limb and np.linalg.norm(places[0, 1] - places[0, 0]) > ROOTED * radius[0]:
-        found.append(1)
+        borders.append(1)
     if ends.end >= 0 and part[-1] != ends.parts[1] and _gap(places[0, -1], places[0, -2]) > ROOTED * radius[-1]:
-        found.append(len(part))
-    return np.array(sorted(found), dtype=np.int64)
+        borders.append(len(part))
+    return np.array(sorted(borders), dtype=np.int64)
 
 
 def _gap(first: Floats, second: Floats) -> float:

@@ -1,29 +1,17 @@
-"""Which bone each vertex belongs to: by its level set on limbs, by the nearest bone in the body."""
+"""Bones of vertices: on limbs that of their level set, in the body the nearest."""
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..surface.mesh import Floats, Ints
 from ..surface.ties import first_least
+from .joint_tree import JointTree
 from .slices import Slices
 
 
-def bones_of_vertices(
-    analysis: Analysis, slices: Slices, bone_of_slice: Ints, joints: Floats, parent: Ints, part: Ints
-) -> Ints:
-    """Return (V,) for each vertex of the input the bone, by the joint it ends in.
-
-    Parameters
-    ----------
-    analysis : Analysis
-    slices : Slices
-    bone_of_slice : (S,) int64
-        -1 for slices that no limb runs through.
-    joints : (J, 3) float64
-    parent, part : (J,) int64
-        The root's part is that of the body.
-    """
+def bones_of_vertices(analysis: Analysis, slices: Slices, tree: JointTree) -> Ints:
+    """Return (V,) the bone of each vertex of the input, by the joint it ends in."""
     surface, net = analysis.surface, analysis.net
     n_vertices = len(analysis.mesh.vertices)
     slice_of = np.full(len(net.positions), -1)
@@ -31,29 +19,30 @@ def bones_of_vertices(
     slice_of = slice_of[:n_vertices][surface.vertex_of_input]
     analyzed = np.flatnonzero(slice_of >= 0)
     owner = np.full(n_vertices, -1)
-    owner[analyzed] = bone_of_slice[slice_of[analyzed]]
+    owner[analyzed] = tree.bone_of_slice[slice_of[analyzed]]
     # Between two limbs the level sets lie askew: there the nearest bone is the better guide.
-    in_body = (owner < 0) | (part[owner] == part[0])
+    in_body = (owner < 0) | (tree.part[owner] == tree.part[0])
     in_body &= slice_of >= 0
     lost = np.flatnonzero(in_body)
-    owner[lost] = _nearest_bone(analysis.mesh.vertices[lost], slices.part[slice_of[lost]], joints, parent, part)
+    owner[lost] = _nearest_bone(analysis.mesh.vertices[lost], slices.part[slice_of[lost]], tree)
     return _spread(owner, analysis)
 
 
-def _nearest_bone(points: Floats, part_of_point: Ints, joints: Floats, parent: Ints, part: Ints) -> Ints:
+def _nearest_bone(points: Floats, part_of_point: Ints, tree: JointTree) -> Ints:
     """Return the nearest bone among those of the same part, or of all where a part has none."""
-    bones = np.arange(1, len(joints))
-    start, along = joints[parent[bones]], joints[bones] - joints[parent[bones]]
+    bones = np.arange(1, len(tree.places))
+    start = tree.places[tree.parent[bones]]
+    along = tree.places[bones] - start
     square = np.maximum(np.einsum("bj,bj->b", along, along), np.finfo(float).tiny)
     owner = np.empty(len(points), dtype=np.int64)
     for label in np.unique(part_of_point).tolist():
         rows = np.flatnonzero(part_of_point == label)
-        own = np.flatnonzero(part[bones] == label)
-        own = own if len(own) else np.arange(len(bones))
-        from_start = points[rows, None] - start[own]
-        share = np.clip(np.einsum("pbj,bj->pb", from_start, along[own]) / square[own], 0, 1)
-        distance = np.linalg.norm(from_start - share[:, :, None] * along[own], axis=2)
-        owner[rows] = bones[own[first_least(distance)]]
+        of_part = np.flatnonzero(tree.part[bones] == label)
+        of_part = of_part if len(of_part) else np.arange(len(bones))
+        from_start = points[rows, None] - start[of_part]
+        share = np.clip(np.einsum("pbj,bj->pb", from_start, along[of_part]) / square[of_part], 0, 1)
+        distance = np.linalg.norm(from_start - share[:, :, None] * along[of_part], axis=2)
+        owner[rows] = bones[of_part[first_least(distance)]]
     return owner
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats, Ints
 from ..surface.ties import ROUNDING, evened, first_largest
@@ -24,7 +24,7 @@ class Slices:
     Attributes
     ----------
     offset : (A + 1,) int64
-        Where the slices of each arc begin.
+        The first slice of each arc.
     of_triangle : (m,) int64
         The slice that each net triangle lies in.
     weight : (m,) float64
@@ -32,7 +32,7 @@ class Slices:
     girth : (S,) float64
         Mean length of the level sets.
     length : (S,) float64
-        Area by girth: how far a slice reaches along its limb.
+        Area by girth: the reach of a slice along its limb.
     part : (S,) int64
         The label that most of the area has.
     """
@@ -51,7 +51,7 @@ class Slices:
 
     @property
     def radius(self) -> Floats:
-        """(S,) that a circle of the girth has."""
+        """(S,) radius of a circle of the girth."""
         return self.girth / (2 * np.pi)
 
     def of_arc(self, arc: int) -> Ints:
@@ -88,7 +88,14 @@ def slice_arcs(analysis: Analysis, graph: ReebGraph, labels: NDArray[np.int32]) 
     area = np.bincount(of_triangle, net.areas, n_slices)
     girth = total / _rises(lowest, offset, values[graph.vertex[graph.arcs]])
     label = labels[analysis.surface.input_triangle[net.triangle_of_surface]]
-    return Slices(offset, of_triangle, weight, girth, area / girth, _main_labels(of_triangle, label, net.areas))
+    return Slices(
+        offset=offset,
+        of_triangle=of_triangle,
+        weight=weight,
+        girth=girth,
+        length=area / girth,
+        part=_main_labels(of_triangle, label, net.areas),
+    )
 
 
 def centres_at_rest(analysis: Analysis) -> Floats:
@@ -111,7 +118,7 @@ def _means_of_corners(values: Floats) -> Floats:
 
 
 def _equal_areas(arc: Ints, n_arcs: int, height: Floats, area: Floats) -> tuple[Ints, Ints, Floats]:
-    """Return where the slices of each arc begin, the slice of each triangle, and where each slice is lowest."""
+    """Return the first slice of each arc, the slice of each triangle, and the lowest height in each slice."""
     # Triangles of one ring of a regular limb are equally high: they stay in one slice, whatever their order.
     level = evened(height, float(np.ptp(height)))
     order = np.lexsort((level, arc))
@@ -140,7 +147,7 @@ def _level_lengths(corners: Floats, values: Floats) -> Floats:
 
 
 def _rises(lowest: Floats, offset: Ints, ends: Floats) -> Floats:
-    """Return (S,) by how much the field rises through each slice, given the ends (A, 2) of the arcs."""
+    """Return (S,) the rise of the field through each slice, given the ends (A, 2) of the arcs."""
     count = np.diff(offset)
     filled = np.flatnonzero(count)
     bottom = lowest.copy()

@@ -1,10 +1,12 @@
-"""Which part is the mirror image of which: by reflection where a shape is symmetric in space, else by matching."""
+"""Parts that are mirror images of each other: by reflection where a shape is symmetric in space, else by matching."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..progress import Progress, silent
 from ..registration.dense.point_map import point_map
 from ..registration.eigenfunctions.matching import match
@@ -19,9 +21,28 @@ SAME_PLACE = 0.01
 LEAST_SHARE = 0.6
 # A matching of this confidence is likely right.
 SURE = 0.5
-# Left and right are told by x if the way across has at least this share of it.
+# Left and right are along x if the direction across has at least this share of it.
 LEAST_ALONG_X = 0.3
 REFLECTIONS = np.array([[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class Reflection:
+    """A map of a surface of n points onto itself that swaps its sides.
+
+    Attributes
+    ----------
+    image : (n,) int64
+        The point that each point goes to.
+    triangles : (m, 3) int64
+        Over these points.
+    input_triangle : (m,) int64
+        The triangle of the input that each of them lies in.
+    """
+
+    image: Ints
+    triangles: Ints
+    input_triangle: Ints
 
 
 def mirror_parts(analysis: Analysis, labels: NDArray[np.int32], *, progress: Progress = silent) -> Ints | None:
@@ -35,19 +56,42 @@ def mirror_parts(analysis: Analysis, labels: NDArray[np.int32], *, progress: Pro
     labels : (T,) int32
         Part of each triangle of the input.
     progress : Progress
-        Told before each step; may raise `Cancelled`.
+        Called before each step; may raise `Cancelled`.
 
     Returns
     -------
     (P,) int64 or None
         None where the shape has no mirror symmetry that is sure.
+
+    Raises
+    ------
+    RegistrationError
+        If the shape is not symmetric in space and was analyzed shell by shell.
+
+    References
+    ----------
+    .. [1] Ovsjanikov, Sun, Guibas, "Global Intrinsic Symmetries of Shapes", SGP 2008.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from compute import TriangleMesh, analyze, mirror_parts
+    >>> height, angle = np.mgrid[-3:3:13j, 0 : 2 * np.pi : 8j][:, :, :-1].reshape(2, -1)
+    >>> k, right = np.arange(84), np.arange(84).reshape(12, 7)[:, [1, 2, 3, 4, 5, 6, 0]].ravel()
+    >>> triangles = np.concatenate([np.stack([k, right, right + 7], 1), np.stack([k, right + 7, k + 7], 1)])
+    >>> girth = np.sqrt(9 - height**2) / 3
+    >>> spindle = TriangleMesh(np.stack([girth * np.cos(angle), girth * np.sin(angle), height], 1), triangles)
+    >>> analysis = analyze(spindle, field=1)
+    >>> sides = (np.sin(angle)[triangles].mean(axis=1) > 0).astype(np.int32)
+    >>> mirror_parts(analysis, sides).tolist()
+    [1, 0]
     """
     progress(0.0, "Looking for symmetry")
-    landing = _reflected(analysis)
-    if landing is None:
+    reflection = _reflected(analysis)
+    if reflection is None:
         progress(0.2, "Matching the shape with its mirror image")
-        landing = _matched(analysis)
-    return None if landing is None else _partners(*landing, labels)
+        reflection = _matched(analysis)
+    return None if reflection is None else _partners(reflection, labels)
 
 
 def sides(skeleton: Skeleton, partner: Ints) -> Ints:
@@ -76,8 +120,8 @@ def _start_of(skeleton: Skeleton, part: int) -> Floats | None:
     return skeleton.joints[skeleton.parent[bones[0]]] if len(bones) else None
 
 
-def _reflected(analysis: Analysis) -> tuple[Ints, Ints, Ints] | None:
-    """Return the landing of a shape that lies on its own reflection; None if it does not."""
+def _reflected(analysis: Analysis) -> Reflection | None:
+    """Return the reflection of a shape onto itself; None if it does not lie on its reflection."""
     mesh = analysis.surface.mesh
     used, corners = np.unique(mesh.triangles, return_inverse=True)
     corners = corners.reshape(-1, 3)
@@ -85,41 +129,31 @@ def _reflected(analysis: Analysis) -> tuple[Ints, Ints, Ints] | None:
     weight = np.bincount(corners.ravel(), np.repeat(mesh.areas, 3), len(used))
     centred = points - np.average(points, axis=0, weights=weight)
     tree = cKDTree(centred)
-    for reflection in REFLECTIONS:
-        distance, landing = tree.query(centred * reflection)
+    for axes in REFLECTIONS:
+        distance, image = tree.query(centred * axes)
         if np.average(distance, weights=weight) < SAME_PLACE * np.sqrt(mesh.areas.sum()):
-            return landing, corners, analysis.surface.input_triangle
+            return Reflection(image, corners, analysis.surface.input_triangle)
     return None
 
 
-def _matched(analysis: Analysis) -> tuple[Ints, Ints, Ints] | None:
-    """Return the landing of a shape by matching with its mirror image; None if that is not sure."""
+def _matched(analysis: Analysis) -> Reflection | None:
+    """Return the reflection of a shape onto itself by matching with its mirror image; None if that is not sure."""
     shape = spectral_shape(analysis.matching_basis)
     matching = match(analysis, analysis, mirrored=True)
     if matching.confidence < SURE:
         return None
-    landing = point_map(shape.mirrored(), shape, matching)
-    return landing, shape.triangles, shape.input_triangle
+    image = point_map(shape.mirrored(), shape, matching)
+    return Reflection(image, shape.triangles, shape.input_triangle)
 
 
-def _partners(landing: Ints, corners: Ints, input_triangle: Ints, labels: NDArray[np.int32]) -> Ints:
-    """Return the part that most of each part lands on, if that is mutual.
-
-    Parameters
-    ----------
-    landing : (n,) int64
-        The point that each point lands on.
-    corners : (m, 3) int64
-        Triangles over these points.
-    input_triangle : (m,) int64
-        The triangle of the input that each lies in.
-    labels : (T,) int32
-    """
+def _partners(reflection: Reflection, labels: NDArray[np.int32]) -> Ints:
+    """Return (P,) the part to which most of each part is reflected, if that is mutual."""
     n_labels = int(labels.max()) + 1
-    label = labels[input_triangle].astype(np.int64)
-    of_point = np.zeros(len(landing), dtype=np.int64)
-    of_point[corners.ravel()] = np.repeat(label, 3)
-    votes = np.bincount(np.repeat(label, 3) * n_labels + of_point[landing[corners.ravel()]], minlength=n_labels**2)
+    label = labels[reflection.input_triangle].astype(np.int64)
+    corners = reflection.triangles.ravel()
+    of_point = np.zeros(len(reflection.image), dtype=np.int64)
+    of_point[corners] = np.repeat(label, 3)
+    votes = np.bincount(np.repeat(label, 3) * n_labels + of_point[reflection.image[corners]], minlength=n_labels**2)
     share = votes.reshape(n_labels, n_labels) / np.maximum(np.bincount(label, minlength=n_labels) * 3, 1)[:, None]
     best = first_largest(share)
     number = np.arange(n_labels)

@@ -1,17 +1,21 @@
-"""Tips: the extrema at which limbs end, and how far the bones reach into them."""
+"""Tips: the extrema at which limbs end, and the places up to which bones reach into them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..analysis import Analysis
+from ..analysis.analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats
-from ..surface.ties import evened, first_largest
+from ..surface.ties import evened, first_largest, first_nearest
 from .branching import Chain
 from .interior import Interior
 from .layout import BoneLayout
+from .sliced_shape import SlicedShape
 from .slices import Slices
 
-# How far a tip reaches from the last slice towards the extremum, as long as it stays inside.
+# Shares of the way from the last slice to the extremum that a tip may reach, as long as it stays inside.
 REACHES = (0.85, 0.7, 0.5, 0.3)
 # A middle line that never gets as far out as this fraction of its limb ends in a cavity.
 CAVITY = 0.82
@@ -36,19 +40,56 @@ def tips_of_parts(analysis: Analysis, graph: ReebGraph, slices: Slices, layout: 
     return {leaf: part for part, leaf in tips.items()}
 
 
+@dataclass(frozen=True, eq=False)
+class Tip:
+    """The tip of a limb; P poses.
+
+    Attributes
+    ----------
+    places : (P, 3) float64
+    last : int
+        The slice from which the middle line runs straight to the tip.
+    """
+
+    places: Floats
+    last: int
+
+
+def tip_of_chain(chain: Chain, shape: SlicedShape) -> Tip:
+    """Return the tip at the end of a chain: towards its extremum, or its farthest point if that lies in a cavity."""
+    crown = hidden_crown(chain, shape.slices, shape.centres[0], shape.triangle_centres)
+    if crown is None:
+        place, last = shape.analysis.net.positions[shape.graph.vertex[chain.end]], int(chain.slices[-1])
+    else:
+        place, last = shape.triangle_centres[crown], widest_slice(chain, shape.slices)
+    vertex = first_nearest(shape.vertex_tree, place[None])[0]
+    return Tip(reaching(shape.centres[:, last], shape.poses[:, vertex], shape.interior), last)
+
+
+def with_straight_tips(centres: Floats, tips: Mapping[Chain, Tip]) -> Floats:
+    """Return the centres (P, S, 3) of slices, on each chain those behind the last before its tip on a straight line."""
+    straight = centres.copy()
+    for chain, tip in tips.items():
+        late = chain.slices[1 + np.flatnonzero(chain.slices == tip.last)[0] :]
+        share = np.linspace(0, 1, len(late) + 2)[1:-1, None]
+        start = centres[:, tip.last]
+        straight[:, late] = start[:, None] + share * (tip.places - start)[:, None]
+    return straight
+
+
 def hidden_crown(chain: Chain, slices: Slices, centres: Floats, places: Floats) -> int | None:
     """Return the net triangle farthest from where a limb begins, if its extremum lies in a cavity such as a mouth.
 
     A middle line that runs the length of a limb comes near its farthest point, even if it curls back.
     """
-    is_own = np.zeros(slices.count, dtype=bool)
-    is_own[chain.slices] = True
-    own = np.flatnonzero(is_own[slices.of_triangle])
+    is_of_chain = np.zeros(slices.count, dtype=bool)
+    is_of_chain[chain.slices] = True
+    triangles = np.flatnonzero(is_of_chain[slices.of_triangle])
     line = centres[chain.slices]
-    distance = np.linalg.norm(places[own] - line[0], axis=1)
+    distance = np.linalg.norm(places[triangles] - line[0], axis=1)
     farthest = int(first_largest(distance))
     reach = np.linalg.norm(line - line[0], axis=1).max()
-    return int(own[farthest]) if reach < CAVITY * distance[farthest] else None
+    return int(triangles[farthest]) if reach < CAVITY * distance[farthest] else None
 
 
 def widest_slice(chain: Chain, slices: Slices) -> int:

@@ -7,6 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from ..choices import SHELLS
 from ..errors import MeshError
 from .bridging import bridge_shells, large_shells
 from .mesh import Bools, Ints, TriangleMesh
@@ -211,8 +212,7 @@ def _nearest_chosen(mesh: TriangleMesh, twin: Ints, chosen: Ints) -> Ints:
     return nearest
 
 
-# Treatments of a mesh of several shells.
-SHELLS = {"bridged": bridged_surface, "largest": clean_surface, "separate": separate_surface}
+_SURFACE_OF = dict(zip(SHELLS, (bridged_surface, clean_surface, separate_surface), strict=True))
 
 
 def analyzed_surface(mesh: TriangleMesh, shells: str) -> Surface:
@@ -225,4 +225,4 @@ def analyzed_surface(mesh: TriangleMesh, shells: str) -> Surface:
     """
     if shells not in SHELLS:
         raise MeshError(f'Loose parts are "bridged", the "largest" is taken or they are "separate", not "{shells}".')
-    return SHELLS[shells](mesh)
+    return _SURFACE_OF[shells](mesh)

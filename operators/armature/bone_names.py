@@ -1,8 +1,9 @@
-"""What bones are called: after their parts, numbered outward, with the suffix that Blender mirrors poses by."""
+"""Names of bones: after their parts, numbered outward, with the suffix that Blender mirrors poses by."""
 
 from collections import Counter
 
 import numpy as np
+from numpy.typing import NDArray
 
 ROOT = "Root"
 SUFFIXES = {1: ".L", -1: ".R", 0: ""}
@@ -16,8 +17,8 @@ LONGEST_BASE = 50
 
 
 def name_bones(
-    parent: np.ndarray,
-    part: np.ndarray,
+    parent: NDArray[np.int64],
+    part: NDArray[np.int64],
     names: dict[int, str],
     pairing: dict[int, tuple[int, int]],
     taken: set[str],
@@ -41,18 +42,18 @@ def name_bones(
     seen: Counter[int] = Counter()
     given = [_free(ROOT, "", taken)]
     for joint in range(1, len(parent)):
-        own, goal = int(part[joint]), goals[joint]
-        base, suffix = sided[goal if goal >= 0 else own]
+        limb, goal = int(part[joint]), goals[joint]
+        base, suffix = sided[goal if goal >= 0 else limb]
         if goal >= 0:
             base = _shortened(base, LONGEST_BASE) + " root"
-        elif count[own] > 1:
-            seen[own] += 1
-            base = f"{_shortened(base, LONGEST_BASE)}_{seen[own]}"
+        elif count[limb] > 1:
+            seen[limb] += 1
+            base = f"{_shortened(base, LONGEST_BASE)}_{seen[limb]}"
         given.append(_free(base, suffix, taken.union(given)))
     return given
 
 
-def _goals(parent: np.ndarray, part: np.ndarray) -> list[int]:
+def _goals(parent: NDArray[np.int64], part: NDArray[np.int64]) -> list[int]:
     """Return for each bone that only carries another part the number of that part, -1 for all others."""
     goals = []
     for joint in range(len(parent)):

@@ -4,14 +4,16 @@ from collections.abc import Callable
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
-from ..mesh_state import part_table
-from ..messages.sentences import tell
+from ..blender.known_values import mesh_of, present
+from ..jobs.mesh_handle import MeshHandle
+from ..mesh_state.state import read
+from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal
-from ..parts.analyze import Ticket
 from .bone_names import name_bones
 from .skeleton_options import ArmatureOptions
-from .skeleton_request import Laid, SkeletonRequest, part_names
+from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
 
 # Length of the root bone in radii of the body around it.
 ROOT_LENGTH = 0.6
@@ -37,47 +39,52 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
     bl_label = "Create Armature"
     bl_options = {"REGISTER", "UNDO"}
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
-        if self.weights != "NONE" and any(modifier.type == "ARMATURE" for modifier in context.object.modifiers):
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., NamedSkeleton], MeshHandle]:
+        if self.weights != "NONE" and any(
+            modifier.type == "ARMATURE" for modifier in present(context.object).modifiers
+        ):
             raise Refusal(ALREADY_BOUND)
         return super().begin(context)
 
     def needs_weights(self) -> bool:
         return self.weights == "PARTS"
 
-    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: Laid) -> None:
+    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton) -> Messages:
         skeleton = laid.skeleton
         taken = {group.name for group in obj.vertex_groups}
-        names = name_bones(skeleton.parent, skeleton.part, part_names(obj.data, skeleton), laid.pairing, taken)
+        names = name_bones(skeleton.parent, skeleton.part, part_names(mesh_of(obj), skeleton), laid.pairing, taken)
         armature = add_armature(context, obj, laid, names)
+        infos, is_bound = (f"{len(names)} bones in {armature.name}.",), True
         if self.weights == "PARTS":
-            bind(obj, armature, names, laid.weights)
+            bind(obj, armature, names, present(laid.weights))
         elif self.weights == "AUTOMATIC":
             bind_automatically(context, obj, armature)
-            if not _is_bound(obj, names):
-                tell(self, "WARNING", NOT_BOUND)
-        tell(self, "INFO", f"{len(names)} bones in {armature.name}.")
+            is_bound = _is_bound(obj, names)
+        return Messages(infos, () if is_bound else (NOT_BOUND,))
 
 
-def add_armature(context: bpy.types.Context, obj: bpy.types.Object, laid: Laid, names: list[str]) -> bpy.types.Object:
+def add_armature(
+    context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton, names: list[str]
+) -> bpy.types.Object:
     """Add the armature of a skeleton where an object is, and make it the active one."""
-    armature = bpy.data.objects.new(f"{obj.name} rig", bpy.data.armatures.new(f"{obj.name} rig"))
+    data = bpy.data.armatures.new(f"{obj.name} rig")
+    armature = bpy.data.objects.new(f"{obj.name} rig", data)
     for collection in obj.users_collection:
         collection.objects.link(armature)
     armature.parent, armature.parent_type, armature.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
     armature.matrix_parent_inverse = obj.matrix_parent_inverse
     armature.matrix_basis = obj.matrix_basis
     armature.show_in_front = True
-    context.view_layer.objects.active = armature
+    present(context.view_layer).objects.active = armature
     armature.select_set(True)
     bpy.ops.object.mode_set(mode="EDIT")
-    _add_bones(armature.data.edit_bones, laid, names)
+    _add_bones(data.edit_bones, laid, names)
     bpy.ops.object.mode_set(mode="OBJECT")
-    _colour_bones(armature.data, obj.data, laid, names)
+    _colour_bones(data, mesh_of(obj), laid, names)
     return armature
 
 
-def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], weights: np.ndarray) -> None:
+def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], weights: NDArray[np.float64]) -> None:
     """Give an object the weights of its bones as vertex groups, and let the armature move it."""
     for name, column in zip(names[1:], weights.T[1:], strict=True):
         group = obj.vertex_groups.new(name=name)
@@ -88,6 +95,7 @@ def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], we
     obj.parent, obj.parent_type, obj.parent_bone = armature, "OBJECT", ""
     obj.matrix_parent_inverse = obj.matrix_basis.inverted_safe()
     modifier = obj.modifiers.new("Armature", "ARMATURE")
+    assert isinstance(modifier, bpy.types.ArmatureModifier)
     modifier.object = armature
     # What refines the mesh is to refine the posed one; only a mirrored half must become a whole first.
     n_mirrors = next(i for i, other in enumerate(obj.modifiers) if other.type != "MIRROR")
@@ -96,17 +104,19 @@ def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], we
 
 def bind_automatically(context: bpy.types.Context, obj: bpy.types.Object, armature: bpy.types.Object) -> None:
     """Let Blender find the weights."""
-    chosen = {"object": armature, "active_object": armature, "selected_editable_objects": [obj, armature]}
-    with context.temp_override(**chosen, selected_objects=[obj, armature]):
+    both = [obj, armature]
+    with context.temp_override(
+        object=armature, active_object=armature, selected_editable_objects=both, selected_objects=both
+    ):
         bpy.ops.object.parent_set(type="ARMATURE_AUTO", keep_transform=True)
 
 
 def _is_bound(obj: bpy.types.Object, names: list[str]) -> bool:
-    own = {group.index for group in obj.vertex_groups if group.name in names}
-    return any(element.group in own for vertex in obj.data.vertices for element in vertex.groups)
+    of_bones = {group.index for group in obj.vertex_groups if group.name in names}
+    return any(element.group in of_bones for vertex in mesh_of(obj).vertices for element in vertex.groups)
 
 
-def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: Laid, names: list[str]) -> None:
+def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: NamedSkeleton, names: list[str]) -> None:
     skeleton = laid.skeleton
     root = edit_bones.new(names[0])
     root.head = skeleton.joints[0]
@@ -123,15 +133,15 @@ def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: Laid, names: list[
         bone.align_roll(FRONT if is_steep else UP)
 
 
-def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: Laid, names: list[str]) -> None:
+def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: NamedSkeleton, names: list[str]) -> None:
     """Give bones the colours of their parts."""
-    linear = part_table.colours(mesh, int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
+    linear = read(mesh).parts.colours_of(int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     for name, colour in zip(names, srgb.tolist(), strict=True):
-        bone = armature.bones[name]
-        bone.color.palette = "CUSTOM"
-        bone.color.custom.normal = colour
-        bone.color.custom.select = bone.color.custom.active = [(1 + 2 * component) / 3 for component in colour]
+        shown = present(armature.bones[name].color)
+        shown.palette = "CUSTOM"
+        shown.custom.normal = colour
+        shown.custom.select = shown.custom.active = [(1 + 2 * component) / 3 for component in colour]
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_create_armature,))

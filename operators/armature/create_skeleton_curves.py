@@ -2,9 +2,11 @@
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
-from ..messages.sentences import tell
-from .skeleton_request import Laid, SkeletonRequest, part_names
+from ..blender.known_values import mesh_of, present
+from ..messages.sentences import Messages
+from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
 
 # On the curve: the part that each of its splines lies in, by name.
 SPLINE_PARTS = "eigenparts_spline_parts"
@@ -19,18 +21,18 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
     bl_label = "Create Skeleton Curves"
     bl_options = {"REGISTER", "UNDO"}
 
-    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: Laid) -> None:
+    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton) -> Messages:
         skeleton = laid.skeleton
         rows = rows_of_bones(skeleton.parent, skeleton.part, skeleton.loops)
-        names = part_names(obj.data, skeleton)
+        names = part_names(mesh_of(obj), skeleton)
         curve = add_curve(obj, [(skeleton.joints[row], skeleton.radius[row]) for row in rows])
-        curve.data[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
-        context.view_layer.objects.active = curve
+        present(curve.data)[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
+        present(context.view_layer).objects.active = curve
         curve.select_set(True)
-        tell(self, "INFO", f"{len(rows)} splines in {curve.name}.")
+        return Messages((f"{len(rows)} splines in {curve.name}.",))
 
 
-def rows_of_bones(parent: np.ndarray, part: np.ndarray, loops: np.ndarray) -> list[list[int]]:
+def rows_of_bones(parent: NDArray[np.int64], part: NDArray[np.int64], loops: NDArray[np.int64]) -> list[list[int]]:
     """Return the joints of each row of bones that follow each other in one part; opened loops are closed again."""
     rows: dict[int, list[int]] = {}
     n_children = np.bincount(parent[1:], minlength=len(parent))
@@ -44,7 +46,7 @@ def rows_of_bones(parent: np.ndarray, part: np.ndarray, loops: np.ndarray) -> li
     return list(rows.values())
 
 
-def add_curve(obj: bpy.types.Object, lines: list[tuple[np.ndarray, np.ndarray]]) -> bpy.types.Object:
+def add_curve(obj: bpy.types.Object, lines: list[tuple[NDArray[np.float64], NDArray[np.float64]]]) -> bpy.types.Object:
     """Add a curve object where an object is, with a polyline for each row of (n, 3) points and (n,) radii."""
     data = bpy.data.curves.new(f"{obj.name} skeleton", "CURVE")
     data.dimensions, data.bevel_depth = "3D", THICKNESS

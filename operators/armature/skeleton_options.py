@@ -1,13 +1,16 @@
-"""What a skeleton can be asked for; the scene keeps it for the panel, the operators take it from scripts."""
+"""Options of a skeleton; the scene keeps them for the panel, the operators take them from scripts."""
 
 import bpy
-from bpy.props import EnumProperty, IntProperty, PointerProperty
+from bpy.props import PointerProperty
+
+from ..blender.registered_settings import SKELETON_SETTINGS
+from ..blender.typed_properties import EnumProperty, IntProperty, TypedProperties
 
 
-class SkeletonOptions:
-    """What all operators that lay bones have in common."""
+class SkeletonOptions(TypedProperties):
+    """Options of all operators that lay bones."""
 
-    bones_in_limbs: IntProperty(
+    bones_in_limbs: int = IntProperty(
         name="Bones in Limbs",
         description="How many bones a long straight limb is divided into, so that it can be bent",
         default=2,
@@ -16,10 +19,10 @@ class SkeletonOptions:
     )
 
 
-class ArmatureOptions(SkeletonOptions):
-    """What an armature needs as well."""
+class ArmatureOptions(SkeletonOptions, TypedProperties):
+    """Options of an armature."""
 
-    weights: EnumProperty(
+    weights: str = EnumProperty(
         name="Weights",
         description="How the bones move the mesh",
         items=[
@@ -40,10 +43,10 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory((Eig
 def register() -> None:
     """Give scenes their settings."""
     _register_classes()
-    bpy.types.Scene.eigenparts_skeleton = PointerProperty(type=EigenpartsSkeletonSettings)
+    setattr(bpy.types.Scene, SKELETON_SETTINGS, PointerProperty(type=EigenpartsSkeletonSettings))
 
 
 def unregister() -> None:
     """Take the settings away again."""
-    del bpy.types.Scene.eigenparts_skeleton
+    delattr(bpy.types.Scene, SKELETON_SETTINGS)
     _unregister_classes()

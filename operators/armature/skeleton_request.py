@@ -1,35 +1,41 @@
-"""What operators have in common that lay bones into the active mesh: the analysis, its skeleton, left and right."""
+"""Base class of the operators that lay bones into the active mesh: the analysis, its skeleton, left and right."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import skeleton_settings
 from ..jobs import recent_analyses
+from ..jobs.mesh_handle import MeshHandle
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data import mesh_arrays
-from ..mesh_state import bone_layout, part_sides, part_table, state
-from ..messages.sentences import tell
-from ..messages.user_errors import Refusal
+from ..mesh_state import bone_layout, part_sides
+from ..mesh_state.references import reference_of, state_of_reference
+from ..mesh_state.state import is_analyzed_for, read, remember
+from ..messages.sentences import Messages
 from ..outputs.part_writer import read_labels
 from ..outputs.rollback import all_or_nothing, bound_or_not, nothing_left_behind
 from ..parts.analysis_request import AnalysisRequest
-from ..parts.analyze import Ticket, find_mesh
+from ..parts.analysis_settings import AnalysisInput, read_input
 from .skeleton_options import ArmatureOptions, SkeletonOptions
 
 # How many shapes are remembered by their symmetry.
 RECENT_SYMMETRIES = 8
-_recent_partners = Recent(RECENT_SYMMETRIES)
+# A tuple of one: that a shape has no symmetry is remembered, too.
+_recent_partners: Recent[tuple[NDArray[np.int64] | None]] = Recent(RECENT_SYMMETRIES)
 
 
 @dataclass(frozen=True, eq=False)
-class Laid:
+class NamedSkeleton:
     """A skeleton with all that its bones are called after.
 
     Attributes
@@ -39,16 +45,19 @@ class Laid:
         How much each bone moves each vertex, if that was wanted.
     pairing : dict of int to (int, int)
         For each part that has a side, the part both sides are called after and +1 for left, -1 for right.
+    warnings : tuple of str
+        Of the analysis and of the skeleton.
     """
 
     skeleton: compute.Skeleton
-    weights: np.ndarray | None
+    weights: NDArray[np.float64] | None
     pairing: dict[int, tuple[int, int]]
+    warnings: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class BoneWish:
-    """What is known of the parts, and what kind of skeleton is wanted.
+class SkeletonInput:
+    """The parts of a mesh, and the kind of skeleton that is wanted.
 
     Attributes
     ----------
@@ -67,10 +76,10 @@ class BoneWish:
         The bones of the mesh that this one is registered to.
     """
 
-    labels: np.ndarray
+    labels: NDArray[np.int32]
     level: int
     n_pieces: int
-    poses: tuple[np.ndarray, ...] = ()
+    poses: tuple[NDArray[np.float64], ...] = ()
     pairing: dict[int, tuple[int, int]] = field(default_factory=dict)
     needs_weights: bool = False
     layout: compute.BoneLayout | None = None
@@ -81,78 +90,71 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and state.is_analyzed_for(cls, context)
+        return super().poll(context) and is_analyzed_for(cls, context)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         """From the window: what the call leaves open is taken from the panel."""
         for name in self._options():
             if not self.properties.is_property_set(name):
-                setattr(self, name, getattr(context.scene.eigenparts_skeleton, name))
+                setattr(self, name, getattr(skeleton_settings(context), name))
         return super().invoke(context, event)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Show what can be changed afterwards: with other options of the analysis all would have to be done again."""
-        self.layout.use_property_split = True
+        layout = present(self.layout)
+        layout.use_property_split = True
         for name in self._options():
-            self.layout.prop(self, name)
+            layout.prop(self, name)
 
     def _options(self) -> list[str]:
         names = (*ArmatureOptions.__annotations__, *SkeletonOptions.__annotations__)
         return [name for name in names if name in self.properties.bl_rna.properties]
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Laid], Ticket]:
-        obj = context.object
-        arrays, options = self.read(context)
-        labels = read_labels(obj.data)
-        wish = BoneWish(
-            labels,
-            state.summarize(obj.data).level,
-            self.bones_in_limbs,
-            _other_poses(context),
-            part_sides.of_reference(obj.data),
-            self.needs_weights(),
-            bone_layout.of_reference(obj.data),
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., NamedSkeleton], MeshHandle]:
+        obj = present(context.object)
+        state = read(mesh_of(obj))
+        reference = state_of_reference(state)
+        wanted = SkeletonInput(
+            labels=read_labels(mesh_of(obj)),
+            level=state.level,
+            n_pieces=self.bones_in_limbs,
+            poses=_other_poses(context),
+            pairing={} if reference is None else reference.part_sides,
+            needs_weights=self.needs_weights(),
+            layout=None if reference is None else reference.bone_layout,
         )
-        return partial(lay_bones, arrays, options, wish), Ticket(
-            obj.data.session_uid, mesh_arrays.fingerprint(obj.data)
-        )
+        return partial(lay_bones, read_input(context, obj, self.analysis_settings()), wanted), MeshHandle.of(obj)
 
     def needs_weights(self) -> bool:
         """Whether the mesh is to be bound to the bones with weights of ours."""
         return False
 
-    def finish(self, context: bpy.types.Context, ticket: Ticket, laid: Laid) -> set[str]:
-        mesh = find_mesh(ticket)
-        obj = _object_of(context, mesh)
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, laid: NamedSkeleton) -> Outcome:
+        obj = handle.find_object_in_view(context)
+        mesh = mesh_of(obj)
         with all_or_nothing(mesh), nothing_left_behind(context), bound_or_not(obj):
-            part_sides.remember(mesh, laid.pairing)
-            bone_layout.remember(mesh, laid.skeleton.layout)
-            self.build(context, obj, laid)
-        for warning in (*laid.skeleton.warnings, *_warnings_of_reference(mesh)):
-            tell(self, "WARNING", warning)
+            sides, layout = part_sides.packed_sides(laid.pairing), bone_layout.packed_layout(laid.skeleton.layout)
+            remember(mesh, {**sides, **layout})
+            built = self.build(context, obj, laid)
+        warnings = (*built.warnings, *laid.warnings, *_warnings_of_reference(mesh))
+        Messages(built.infos, warnings).report(self)
         return {"FINISHED"}
+
+    def build(self, context: bpy.types.Context, obj: bpy.types.Object, laid: NamedSkeleton) -> Messages:
+        """Build objects for the bones, and return what is to be told of them."""
+        raise NotImplementedError
 
 
 def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
-    """Return what to tell of a registered mesh whose reference has no bones that it could be given."""
-    reference = bone_layout.reference_of(mesh)
+    """Return the warning about a registered mesh whose reference has no bones that it could be given."""
+    reference = reference_of(read(mesh))
     # An object that was deleted lives on where others refer to it, but nothing can be created for it.
-    if reference is None or not reference.users_scene or bone_layout.read(reference.data) is not None:
+    if reference is None or not reference.users_scene or read(mesh_of(reference)).bone_layout is not None:
         return []
     return [bone_layout.NO_BONES.format(reference.name)]
 
 
-def _object_of(context: bpy.types.Context, mesh: bpy.types.Mesh) -> bpy.types.Object:
-    """Return an object with the mesh, the active one if it still is that."""
-    users = [obj for obj in context.view_layer.objects if obj.data == mesh]
-    if not users:
-        raise Refusal("The object is not in the view layer; it was deleted, excluded or belongs to another scene.")
-    return context.object if context.object in users else users[0]
-
-
-def lay_bones(
-    arrays: mesh_arrays.MeshArrays, options: dict[str, Any], wish: BoneWish, progress: Callable[[float, str], None]
-) -> Laid:
+def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: compute.Progress) -> NamedSkeleton:
     """Run the engine; knows nothing of Blender, so any thread may do it."""
 
     def of_analysis(fraction: float, text: str) -> None:
@@ -161,27 +163,32 @@ def lay_bones(
     def of_symmetry(fraction: float, text: str) -> None:
         progress(0.6 + 0.3 * fraction, text)
 
-    analysis = recent_analyses.recall(arrays, options, of_analysis)
-    labels = wish.labels[arrays.polygon_of_triangle]
-    key = key_of([recent_analyses.key_of_analysis(arrays, options), labels])
+    analysis = recent_analyses.recall(given.arrays, given.options, of_analysis)
+    labels = wanted.labels[given.arrays.polygon_of_triangle]
+    key = key_of([recent_analyses.key_of_analysis(given.arrays, given.options), labels])
     partner = _recall_partner(key, partial(compute.mirror_parts, analysis, labels, progress=of_symmetry))
     progress(0.9, "Laying bones")
-    level = min(wish.level, analysis.hierarchy.n_levels - 1)
+    level = min(wanted.level, analysis.hierarchy.n_levels - 1)
     skeleton = compute.skeleton(
         analysis,
         level=level,
         labels=labels,
-        poses=wish.poses,
-        n_pieces=wish.n_pieces,
+        poses=wanted.poses,
+        n_pieces=wanted.n_pieces,
         partner=partner,
-        layout=wish.layout,
+        layout=wanted.layout,
     )
     progress(0.95, "Binding the mesh")
-    weights = compute.binding_weights(analysis, skeleton) if wish.needs_weights else None
-    return Laid(skeleton, weights, wish.pairing or _pairing(skeleton, partner))
+    weights = compute.binding_weights(analysis, skeleton) if wanted.needs_weights else None
+    return NamedSkeleton(
+        skeleton=skeleton,
+        weights=weights,
+        pairing=wanted.pairing or _pairing(skeleton, partner),
+        warnings=(*analysis.warnings, *skeleton.warnings),
+    )
 
 
-def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarray | None:
+def _recall_partner(key: str, find: Callable[[], NDArray[np.int64] | None]) -> NDArray[np.int64] | None:
     """Return which parts mirror which, as it was found before if that is known: a bent pose takes seconds."""
     kept = _recent_partners.get(key)
     if kept is None:
@@ -192,21 +199,22 @@ def _recall_partner(key: str, find: Callable[[], np.ndarray | None]) -> np.ndarr
 
 def part_names(mesh: bpy.types.Mesh, skeleton: compute.Skeleton) -> dict[int, str]:
     """Return the names of the parts that bones lie in."""
-    return {part: part_table.name_of(mesh, part) for part in np.unique(skeleton.part).tolist()}
+    parts = read(mesh).parts
+    return {part: parts.name_of(part) for part in np.unique(skeleton.part).tolist()}
 
 
-def _pairing(skeleton: compute.Skeleton, partner: np.ndarray | None) -> dict[int, tuple[int, int]]:
+def _pairing(skeleton: compute.Skeleton, partner: NDArray[np.int64] | None) -> dict[int, tuple[int, int]]:
     if partner is None:
         return {}
     side = compute.sides(skeleton, partner)
     return {part: (min(part, int(partner[part])), int(side[part])) for part in np.flatnonzero(side).tolist()}
 
 
-def _other_poses(context: bpy.types.Context) -> tuple[np.ndarray, ...]:
+def _other_poses(context: bpy.types.Context) -> tuple[NDArray[np.float64], ...]:
     """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
     others = [obj for obj in context.selected_objects if obj is not context.object and obj.type == "MESH"]
-    mesh = context.object.data
-    meshes = [obj.data for obj in others if not obj.data.is_editmode and _share_faces(obj.data, mesh)]
+    mesh = mesh_of(context.object)
+    meshes = [mesh_of(obj) for obj in others if not mesh_of(obj).is_editmode and _share_faces(mesh_of(obj), mesh)]
     return tuple(mesh_arrays.read_mesh(other).vertices for other in meshes)
 
 

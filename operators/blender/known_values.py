@@ -25,6 +25,10 @@ class _WithElements(Protocol):
     data: Elements
 
 
+class _WithValue(Protocol):
+    default_value: float | Sequence[float]
+
+
 def present(value: Value | None) -> Value:
     """Return a value that is never missing here, such as the scene while an operator runs."""
     assert value is not None
@@ -43,9 +47,25 @@ def data_of(obj: bpy.types.Object | None, kind: type[Data]) -> Data:
     return obj.data
 
 
+def mesh_with(settings: bpy.types.PropertyGroup) -> bpy.types.Mesh:
+    """Return the mesh that some settings belong to."""
+    assert isinstance(settings.id_data, bpy.types.Mesh)
+    return settings.id_data
+
+
 def elements_of(attribute: bpy.types.Attribute) -> Elements:
     """Return the values of an attribute; each of Blender's attribute types declares them anew."""
     return cast(_WithElements, attribute).data
+
+
+def values_of(array: bpy.types.bpy_prop_array) -> Sequence[float]:
+    """Return the components of a colour or size, which the stubs give no way to read."""
+    return cast(Sequence[float], array)
+
+
+def set_input(node: bpy.types.Node, name: str, value: float | Sequence[float]) -> None:
+    """Set the value of an input of a shader; each of Blender's socket types declares it anew."""
+    cast(_WithValue, node.inputs[name]).default_value = value
 
 
 def numbers_of(owner: bpy.types.ID, name: str) -> Sequence[float]:

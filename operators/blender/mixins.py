@@ -10,10 +10,11 @@ import bpy
 
 if TYPE_CHECKING:
     OperatorMixin = bpy.types.Operator
+    GroupMixin = bpy.types.PropertyGroup
 
     class PanelMixin(bpy.types.Panel):
         """A panel, which Blender gives its layout before it asks it to draw."""
 
         layout: bpy.types.UILayout
 else:
-    OperatorMixin = PanelMixin = object
+    OperatorMixin = GroupMixin = PanelMixin = object

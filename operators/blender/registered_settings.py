@@ -3,6 +3,10 @@
 Blender finds them by name only, so nothing else knows their types. The rooms that register them come later.
 """
 
+# Not evaluated: ``typing`` keeps every ``Rows[...]`` for ever, and with it this module and Blender, which then never
+# ends.
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Protocol, TypeVar
 
@@ -49,18 +53,17 @@ class CorrectionRow(Protocol):
 
 
 class MeshSettings(Protocol):
-    """The parts that a mesh shows, its corrections, and its outputs."""
+    """The parts that a mesh shows and its corrections; the outputs are those of the registry."""
 
     rows: Rows[PartRow]
     active_part: int
     active_row: int
     correction_rows: Rows[CorrectionRow]
     active_correction: int
-    vertex_groups: bool
 
 
 class JobStatus(Protocol):
-    """How far the running job is, and the last problem."""
+    """The progress of the running job, and the last problem."""
 
     is_running: bool
     job: str

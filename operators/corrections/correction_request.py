@@ -1,4 +1,4 @@
-"""What operators have in common that correct the parts of the active mesh by hand."""
+"""Base class of the operators that correct the parts of the active mesh by hand."""
 
 from __future__ import annotations
 
@@ -7,48 +7,52 @@ from typing import Any
 import bpy
 
 from ... import compute
-from ..mesh_state import corrected_analysis, state
+from ..blender.known_values import mesh_of
+from ..blender.mixins import OperatorMixin
+from ..blender.outcome import Outcome
+from ..mesh_state import corrected_analysis
+from ..mesh_state.state import MeshState, is_analyzed_for, read
 from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
-from ..parts.select import use_active_part
+from ..parts.select import PART_PROPERTY, use_active_part
 
 BODY_IS_WHAT_IS_LEFT = "The body is what the parts leave; change the parts next to it instead."
 
 
-class CorrectsParts:
+class CorrectsParts(OperatorMixin):
     """Corrects the parts of the active mesh; operators give ``correct``."""
 
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+        return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
-            corrected_analysis.refuse_uncorrectable(context.object.data)
-            self.fill_in(context.object.data)
-            self.correct(context.object.data)
+            state = read(mesh_of(context.object))
+            corrected_analysis.refuse_uncorrectable(state)
+            self.fill_in(state)
+            self.correct(state)
             return {"FINISHED"}
         return {"CANCELLED"}
 
-    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+    def fill_in(self, state: MeshState) -> None:
         """Set what the call leaves open."""
-        if "part" in self.properties.bl_rna.properties:
-            use_active_part(self, mesh)
+        if PART_PROPERTY in self.properties.bl_rna.properties:
+            use_active_part(self, state.mesh)
 
-    def correct(self, mesh: bpy.types.Mesh) -> None:
+    def correct(self, state: MeshState) -> None:
         """Change the corrections of a mesh."""
         raise NotImplementedError
 
 
-def refuse_absent(mesh: bpy.types.Mesh, *parts: int) -> None:
+def refuse_absent(state: MeshState, *parts: int) -> None:
     """Raise a Refusal if a mesh does not show some parts."""
-    shown = {part for part, _, _ in state.summarize(mesh).parts}
     for part in parts:
-        if part not in shown:
+        if part not in state.summary.shares:
             raise Refusal(f"There is no part {part} at this level.")
 
 
-def new_item(mesh: bpy.types.Mesh, kind: str, part: int, **values: Any) -> compute.Correction:
+def new_item(state: MeshState, kind: str, part: int, **values: Any) -> compute.Correction:
     """Return a correction that is made on what a mesh shows now."""
-    return compute.Correction(kind, part, **values, level=state.summarize(mesh).level, mode=state.mode_of(mesh))
+    return compute.Correction(kind, part, **values, level=state.level, mode=state.mode)

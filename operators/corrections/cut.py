@@ -2,16 +2,20 @@
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import EnumProperty, TypedProperties
 from ..mesh_data.custom_normals import normals_kept
-from ..mesh_data.mesh_arrays import read_mesh
 from ..mesh_data.mesh_cut import cut_mesh
-from ..mesh_state import corrected_analysis, corrections, part_table, registration_record, state
+from ..mesh_state import analysis_writer, corrected_analysis, registration_record
+from ..mesh_state.analyzed_faces import AnalyzedFaces
+from ..mesh_state.state import MeshState, is_analyzed_for, read
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
-from ..outputs import part_writer
+from ..outputs import output_registry, part_writer
 from ..outputs.rollback import all_or_nothing, faces_or_nothing
 from . import paint
 
@@ -19,14 +23,14 @@ from . import paint
 NOTABLE_CHANGE = 0.05
 
 
-class EIGENPARTS_OT_cut(bpy.types.Operator):
+class EIGENPARTS_OT_cut(TypedProperties, bpy.types.Operator):
     """Make the borders of the parts run along edges"""
 
     bl_idname = "eigenparts.cut"
     bl_label = "Cut Borders"
     bl_options = {"REGISTER", "UNDO"}
 
-    method: EnumProperty(
+    method: str = EnumProperty(
         name="Method",
         description="How edges come to lie on the borders",
         items=[
@@ -37,26 +41,28 @@ class EIGENPARTS_OT_cut(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+        return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
-            registration_record.refuse_registered(context.object.data)
-            n_before, shares = len(context.object.data.polygons), _shares(context.object.data)
-            with all_or_nothing(context.object.data), faces_or_nothing(context.object.data):
+            mesh = mesh_of(context.object)
+            state, n_before = read(mesh), len(mesh.polygons)
+            registration_record.refuse_registered(state.registration)
+            shares = state.summary.shares
+            with all_or_nothing(mesh), faces_or_nothing(mesh):
                 if self.method == "INSERT":
-                    insert_borders(context.object)
+                    insert_borders(present(context.object), state)
                 else:
-                    move_borders(context.object.data)
+                    move_borders(state)
             if self.method == "INSERT":
-                _tell_change(self, context.object.data, shares)
-            n_new = len(context.object.data.polygons) - n_before
+                _tell_change(self, read(mesh), shares)
+            n_new = len(mesh.polygons) - n_before
             tell(self, "INFO", f"{n_new} faces were added." if n_new else "The borders run along edges.")
             return {"FINISHED"}
         return {"CANCELLED"}
 
 
-def insert_borders(obj: bpy.types.Object) -> None:
+def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     """Cut the mesh of an object along the borders of the parts that it shows.
 
     Raises
@@ -64,31 +70,29 @@ def insert_borders(obj: bpy.types.Object) -> None:
     Refusal
         If others use the mesh too, or it cannot be cut; nothing is changed then.
     """
-    mesh = obj.data
+    mesh = mesh_of(obj)
     _refuse_shared(obj)
-    part_writer.refuse_foreign_results(mesh)
-    analysis, source = state.load(mesh), state.load_source(mesh)
-    level, mode = state.summarize(mesh).level, state.mode_of(mesh)
-    profile, crossings = corrected_analysis.crossings(mesh, source)
-    arcs = analysis.part_tree.arcs_of_faces
+    output_registry.refuse_foreign_results(state)
+    level, mode, shells = state.level, state.mode, state.shells
+    profile, crossings = corrected_analysis.crossings(state, state.border_source)
+    arcs = state.analysis.part_tree.arcs_of_faces
     with normals_kept(mesh):
         faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
     for number, arc in enumerate(arcs):
         arcs[number] = np.concatenate([arc, arc[faces.origin]])
         arcs[number][faces.face] = faces.arcs[:, number]
-    _show(mesh, arcs, level, mode)
+    _show(mesh, arcs, level, mode, shells)
 
 
-def move_borders(mesh: bpy.types.Mesh) -> None:
+def move_borders(state: MeshState) -> None:
     """Move the borders of the parts that a mesh shows to short lines of its edges."""
-    part_writer.refuse_foreign_results(mesh)
-    analysis = state.load(mesh)
-    level, mode = state.summarize(mesh).level, state.mode_of(mesh)
-    labels = part_writer.read_labels(mesh)
-    moved = compute.shortened_borders(labels, _face_graph(mesh))
-    if corrected_analysis.items_of(mesh):
+    output_registry.refuse_foreign_results(state)
+    analysis, level, mode = state.analysis, state.level, state.mode
+    labels = part_writer.read_labels(state.mesh)
+    moved = compute.shortened_borders(labels, state.faces.graph)
+    if state.corrections:
         # Faces that were given to a part by hand do not follow arcs, so these are given to theirs in the same way.
-        paint.repaint(mesh, np.where(moved != labels, moved, corrections.read_painted(mesh)))
+        paint.repaint(state, np.where(moved != labels, moved, state.painted))
         return
     cuts = analysis.part_tree.cut_arcs(level, mode)
     arcs = analysis.part_tree.arcs_of_faces
@@ -98,34 +102,23 @@ def move_borders(mesh: bpy.types.Mesh) -> None:
         ends = np.flatnonzero((cut > 0) & (cut < len(arc_of_part)))
         arc_of_part[cut[ends]] = ends
         arc[moved != labels] = arc_of_part[moved[moved != labels]]
-    _show(mesh, arcs, level, mode)
+    _show(state.mesh, arcs, level, mode, state.shells)
 
 
-def _show(mesh: bpy.types.Mesh, arcs: list[np.ndarray], level: int, mode: str) -> None:
+def _show(mesh: bpy.types.Mesh, arcs: list[NDArray[np.int64]], level: int, mode: str, shells: str) -> None:
     """Store new arcs of the faces, and divide the mesh as before."""
-    graph = _face_graph(mesh)
-    state.store_branches(mesh, compute.connected_branches([arc[graph.stands_for] for arc in arcs], graph))
+    graph = AnalyzedFaces(mesh, shells).graph
+    analysis_writer.store_branches(mesh, compute.connected_branches([arc[graph.stands_for] for arc in arcs], graph))
     part_writer.segment_mesh(mesh, level=level, mode=mode)
 
 
-def _face_graph(mesh: bpy.types.Mesh) -> "compute.FaceGraph":
-    arrays = read_mesh(mesh)
-    triangles = compute.TriangleMesh(arrays.vertices, arrays.triangles)
-    surface = compute.analyzed_surface(triangles, state.shells_of(mesh))
-    return compute.face_graph(triangles, surface, arrays.polygon_of_triangle)
-
-
-def _shares(mesh: bpy.types.Mesh) -> dict[int, float]:
-    return {part: share for part, share, _ in state.summarize(mesh).parts}
-
-
-def _tell_change(operator: bpy.types.Operator, mesh: bpy.types.Mesh, before: dict[int, float]) -> None:
-    """Tell which part a cut has changed most if that is notable: what hangs together within faces only falls apart."""
-    after = _shares(mesh)
+def _tell_change(operator: bpy.types.Operator, state: MeshState, before: dict[int, float]) -> None:
+    """Warn of the part that a cut has changed most if it is notable: what hangs together within faces falls apart."""
+    after = state.summary.shares
     change = {part: abs(after.get(part, 0.0) - before.get(part, 0.0)) for part in {**before, **after} if part}
     part = max(change, key=change.__getitem__, default=0)
     if part and change[part] > NOTABLE_CHANGE:
-        name, old, new = part_table.name_of(mesh, part), before.get(part, 0.0), after.get(part, 0.0)
+        name, old, new = state.parts.name_of(part), before.get(part, 0.0), after.get(part, 0.0)
         tell(
             operator,
             "WARNING",
@@ -135,7 +128,7 @@ def _tell_change(operator: bpy.types.Operator, mesh: bpy.types.Mesh, before: dic
 
 
 def _refuse_shared(obj: bpy.types.Object) -> None:
-    n_users = obj.data.users - obj.data.use_fake_user
+    n_users = mesh_of(obj).users - mesh_of(obj).use_fake_user
     if n_users > 1:
         raise Refusal(f"The mesh is used {n_users} times; make it single-user first, so that only this object is cut.")
     if any(modifier.type == "MULTIRES" for modifier in obj.modifiers):

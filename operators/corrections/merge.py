@@ -1,61 +1,63 @@
 """Operator: make one part of two that touch."""
 
 import bpy
-from bpy.props import IntProperty
 
 from ... import compute
-from ..mesh_state import corrected_analysis, part_table
+from ..blender.registered_settings import mesh_settings
+from ..blender.typed_properties import IntProperty, TypedProperties
+from ..mesh_state import corrected_analysis
+from ..mesh_state.state import MeshState
 from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import CorrectsParts, new_item, refuse_absent
 
 
-class EIGENPARTS_OT_merge_parts(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_merge_parts(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Join a part to another one that it touches, at every level that has both"""
 
     bl_idname = "eigenparts.merge_parts"
     bl_label = "Merge Parts"
 
-    part: IntProperty(name="Part", description="Number of the part that goes; the active one if not given", min=0)
-    into: IntProperty(
+    part: int = IntProperty(name="Part", description="Number of the part that goes; the active one if not given", min=0)
+    into: int = IntProperty(
         name="Into",
         description="Number of the part that it joins, 0 for the body; the one it grows out of if not given",
         min=0,
     )
 
-    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+    def fill_in(self, state: MeshState) -> None:
         """Join the active part to the one it grows out of."""
-        super().fill_in(mesh)
+        super().fill_in(state)
         if not self.properties.is_property_set("into"):
-            self.into = whole_of(mesh, self.part)
+            self.into = whole_of(state.mesh, self.part)
 
-    def correct(self, mesh: bpy.types.Mesh) -> None:
-        merge_parts(mesh, self.part, self.into)
+    def correct(self, state: MeshState) -> None:
+        merge_parts(state, self.part, self.into)
 
 
-def merge_parts(mesh: bpy.types.Mesh, part: int, into: int) -> None:
+def merge_parts(state: MeshState, part: int, into: int) -> None:
     """Join a part to another one."""
     if part == into:
         raise Refusal("A part cannot be merged with itself; choose another one.")
     if part == 0:
         # The body keeps its number, so it is the other one that goes.
         part, into = into, part
-    refuse_absent(mesh, part, into)
-    items = corrected_analysis.items_of(mesh)
-    item = new_item(mesh, compute.MERGE, part, other=into)
+    refuse_absent(state, part, into)
+    items = state.corrections
+    item = new_item(state, compute.MERGE, part, other=into)
     try:
-        part_writer.correct_mesh(mesh, (*items, item), changed=len(items))
+        part_writer.correct(state, (*items, item), changed=len(items))
     except Refusal as refusal:
         if str(refusal) != corrected_analysis.NO_EFFECT:
             raise
-        names = [part_table.name_of(mesh, number) for number in (part, into)]
+        names = [state.parts.name_of(number) for number in (part, into)]
         raise Refusal(f"{names[0]} and {names[1]} do not touch, so they cannot be one part.") from None
 
 
 def whole_of(mesh: bpy.types.Mesh, part: int) -> int:
     """Return the part that a part grows out of, as the list shows it."""
     path: dict[int, int] = {}
-    for row in mesh.eigenparts.rows:
+    for row in mesh_settings(mesh).rows:
         path[row.depth] = row.part
         if row.part == part:
             return path.get(row.depth - 1, 0)

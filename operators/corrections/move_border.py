@@ -3,25 +3,26 @@
 from dataclasses import replace
 
 import bpy
-from bpy.props import FloatProperty, IntProperty
 
 from ... import compute
+from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
+from ..mesh_state.state import MeshState
 from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 
 
-class EIGENPARTS_OT_move_border(CorrectsParts, bpy.types.Operator):
+class EIGENPARTS_OT_move_border(CorrectsParts, TypedProperties, bpy.types.Operator):
     """Move the border of a part along the field, outward or inward"""
 
     bl_idname = "eigenparts.move_border"
     bl_label = "Move Border"
 
-    part: IntProperty(
+    part: int = IntProperty(
         name="Part", description="Number of the part whose border is moved; the active one if not given", min=0
     )
-    offset: FloatProperty(
+    offset: float = FloatProperty(
         name="Offset",
         description="How far the border is moved from where it was found, as a fraction of the field's range; the part"
         " grows with it",
@@ -31,35 +32,35 @@ class EIGENPARTS_OT_move_border(CorrectsParts, bpy.types.Operator):
         step=0.5,
     )
 
-    def fill_in(self, mesh: bpy.types.Mesh) -> None:
+    def fill_in(self, state: MeshState) -> None:
         """Begin where the border lies now."""
-        super().fill_in(mesh)
+        super().fill_in(state)
         if not self.properties.is_property_set("offset"):
-            self.offset = offset_of(corrected_analysis.items_of(mesh), self.part)
+            self.offset = offset_of(state.corrections, self.part)
 
-    def correct(self, mesh: bpy.types.Mesh) -> None:
-        move_border(mesh, self.part, self.offset)
+    def correct(self, state: MeshState) -> None:
+        move_border(state, self.part, self.offset)
 
 
-def move_border(mesh: bpy.types.Mesh, part: int, offset: float) -> None:
+def move_border(state: MeshState, part: int, offset: float) -> None:
     """Move the border of a part to a distance from where it was found, 0 to put it back."""
     if part == 0:
         raise Refusal(BODY_IS_WHAT_IS_LEFT)
-    refuse_absent(mesh, part)
-    items = corrected_analysis.items_of(mesh)
+    refuse_absent(state, part)
+    items = state.corrections
     place = place_of_border(items, part)
     if place is not None and items[place].kind == compute.SPLIT:
         moved = replace(items[place], value=-offset)
-        part_writer.correct_mesh(mesh, (*items[:place], moved, *items[place + 1 :]), changed=place)
+        part_writer.correct(state, (*items[:place], moved, *items[place + 1 :]), changed=place)
         return
     others = items if place is None else items[:place] + items[place + 1 :]
     if offset == 0:
-        part_writer.correct_mesh(mesh, others)
+        part_writer.correct(state, others)
         return
-    item = new_item(mesh, compute.MOVE, part, value=offset)
-    corrected_analysis.refuse_without_border(mesh, item)
+    item = new_item(state, compute.MOVE, part, value=offset)
+    corrected_analysis.refuse_without_border(state, item)
     place = len(others) if place is None else place
-    part_writer.correct_mesh(mesh, (*others[:place], item, *others[place:]), changed=place)
+    part_writer.correct(state, (*others[:place], item, *others[place:]), changed=place)
 
 
 def place_of_border(items: tuple["compute.Correction", ...], part: int) -> int | None:

@@ -1,4 +1,4 @@
-"""Long work beside the window, and what was computed last. Imports messages, mesh_data."""
+"""Long work beside the window, handles of meshes, and recent results. Imports messages, mesh_data."""
 
 import bpy
 

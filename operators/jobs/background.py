@@ -5,46 +5,59 @@ from typing import Any
 
 import bpy
 
+from ...compute.progress import Progress, silent
+from ..blender.known_values import present
+from ..blender.mixins import OperatorMixin
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import job_status
 from ..messages import unexpected_errors
 from ..messages.sentences import in_language, tell
 from ..messages.unexpected_errors import errors_told
 from ..messages.user_errors import refusals_told
-from .job import Job
+from .job import Job, Result
 from .threads import use_preferred_threads
 
 # Seconds between looks at the job; redrawing more often only takes time from it.
 INTERVAL = 0.1
 
-_running: Job | None = None
+_running: Job[Any] | None = None
 
 
-class BackgroundOperator:
-    """What long operators have in common; they give ``begin`` and ``finish``.
+class BackgroundOperator(OperatorMixin):
+    """Base class of long operators; they give ``begin`` and ``finish``.
 
-    ``begin(context)`` reads what is needed and returns work that never touches Blender and a ticket for ``finish``;
-    ``finish(context, ticket, result)`` writes the result. Scripts wait for the work; the window runs it in a thread.
+    ``begin(context)`` reads what is needed and returns work that never touches Blender and a handle for ``finish``;
+    ``finish(context, handle, result)`` writes the result. Scripts wait for the work; the window runs it in a thread.
     """
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Any], Any]:
+        """Read what is needed, and return the work and a handle."""
+        raise NotImplementedError
+
+    def finish(self, context: bpy.types.Context, handle: Any, result: Any) -> Outcome:
+        """Write the result of the work."""
+        raise NotImplementedError
+
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
-            work, ticket = self.begin(context)
-            return self.finish(context, ticket, work(_silent))
+            work, handle = self.begin(context)
+            return self.finish(context, handle, work(silent))
         return {"CANCELLED"}
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         if bpy.app.background:
             return self.execute(context)
         unexpected_errors.forget()
         with errors_told(self):
-            work, self._ticket = self.begin(context)
+            work, self._handle = self.begin(context)
             self._job = _start(work)
-            self._timer = context.window_manager.event_timer_add(INTERVAL, window=context.window)
-            context.window_manager.progress_begin(0, 100)
-            context.window_manager.modal_handler_add(self)
+            self._timer = present(context.window_manager).event_timer_add(INTERVAL, window=context.window)
+            present(context.window_manager).progress_begin(0, 100)
+            present(context.window_manager).modal_handler_add(self)
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         if event.type == "ESC" and event.value == "PRESS":
             self._job.cancel()
         if self._job is not _running or self._job.is_cancelled:
@@ -58,7 +71,7 @@ class BackgroundOperator:
             return {"PASS_THROUGH"}
         self._leave(context)
         with errors_told(self):
-            return self.finish(context, self._ticket, self._job.result())
+            return self.finish(context, self._handle, self._job.result())
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -67,10 +80,10 @@ class BackgroundOperator:
 
     def _leave(self, context: bpy.types.Context) -> None:
         stop_running_job()
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
-        context.window_manager.eigenparts.is_running = False
+        present(context.window_manager).event_timer_remove(self._timer)
+        present(context.window_manager).progress_end()
+        present(context.workspace).status_text_set(None)
+        job_status(context).is_running = False
         _redraw_sidebars(context)
 
 
@@ -94,32 +107,28 @@ def stop_running_job() -> None:
     _running = None
 
 
-def _start(work: Callable[[Callable[[float, str], None]], Any]) -> Job:
+def _start(work: Callable[[Progress], Result]) -> Job[Result]:
     global _running
     use_preferred_threads()
-    _running = Job(work)
-    return _running
+    _running = job = Job(work)
+    return job
 
 
-def _show_progress(context: bpy.types.Context, operator: str, job: Job) -> None:
-    status = context.window_manager.eigenparts
+def _show_progress(context: bpy.types.Context, operator: str, job: Job[Any]) -> None:
+    status = job_status(context)
     text = in_language(job.text)
     shown = in_language(f"Eigenparts: {text} ({job.fraction:.0%}), ESC to cancel")
     if status.is_running and status.shown == shown:
         return
     status.is_running, status.job = True, operator
     status.fraction, status.text, status.shown = job.fraction, text, shown
-    context.window_manager.progress_update(100 * job.fraction)
-    context.workspace.status_text_set(shown)
+    present(context.window_manager).progress_update(100 * job.fraction)
+    present(context.workspace).status_text_set(shown)
     _redraw_sidebars(context)
 
 
 def _redraw_sidebars(context: bpy.types.Context) -> None:
-    for area in context.screen.areas:
+    for area in present(context.screen).areas:
         for region in area.regions:
             if area.type == "VIEW_3D" and region.type == "UI":
                 region.tag_redraw()
-
-
-def _silent(fraction: float, text: str) -> None:
-    """Scripts wait without being told."""

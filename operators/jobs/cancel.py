@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..blender.outcome import Outcome
 from . import background
 
 
@@ -16,7 +17,7 @@ class EIGENPARTS_OT_cancel(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.is_running()
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         background.stop_running_job()
         return {"FINISHED"}
 

@@ -3,15 +3,18 @@
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from typing import Generic, TypeVar
 
 from ...compute.errors import Cancelled
+from ...compute.progress import Progress
+
+Result = TypeVar("Result")
 
 # A cancelled job may need seconds to notice; the next one waits here, so that two never compute at once.
 _TURN = threading.Lock()
 
 
-class Job:
+class Job(Generic[Result]):
     """Run ``work(progress)`` in a thread.
 
     The thread is a daemon: closing Blender does not wait for it. Whoever started the job polls ``is_done`` and takes
@@ -25,10 +28,10 @@ class Job:
         What is being done, for the user.
     """
 
-    def __init__(self, work: Callable[[Callable[[float, str], None]], Any]) -> None:
+    def __init__(self, work: Callable[[Progress], Result]) -> None:
         self._stop = threading.Event()
         self._report(0.0, "Waiting for the cancelled job to stop")
-        self._outcome: Future[Any] = Future()
+        self._outcome: Future[Result] = Future()
         threading.Thread(target=self._run, args=[work], daemon=True, name="eigenparts").start()
 
     @property
@@ -45,11 +48,11 @@ class Job:
         """Disown the job: it stops at its next report of progress."""
         self._stop.set()
 
-    def result(self) -> Any:
+    def result(self) -> Result:
         """Return what the work returned, or raise what it raised."""
         return self._outcome.result()
 
-    def _run(self, work: Callable[[Callable[[float, str], None]], Any]) -> None:
+    def _run(self, work: Callable[[Progress], Result]) -> None:
         with _TURN:
             try:
                 self._report(0.0, "Starting")

@@ -1,11 +1,14 @@
-"""How many processor cores the matrix libraries of numpy and scipy use."""
+"""Number of processor cores that the matrix libraries of numpy and scipy use."""
 
 import ctypes
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Protocol, cast
 
 import bpy
+
+from ..blender.known_values import present
 
 PACKAGE = __package__.rsplit(".", 2)[0]
 
@@ -25,10 +28,16 @@ def use_threads(n_threads: int) -> int:
     return len(setters)
 
 
-def user_preferences() -> bpy.types.AddonPreferences | None:
+class Preferences(Protocol):
+    """The preferences, as far as they are read before they are registered."""
+
+    n_threads: int
+
+
+def user_preferences() -> Preferences | None:
     """Return what the user prefers; None where Eigenparts is not installed as an extension, such as in a script."""
-    addon = bpy.context.preferences.addons.get(PACKAGE)
-    return addon.preferences if addon is not None else None
+    addon = present(bpy.context.preferences).addons.get(PACKAGE)
+    return cast(Preferences, addon.preferences) if addon is not None else None
 
 
 def use_preferred_threads() -> None:
@@ -47,7 +56,9 @@ def _libraries() -> Iterator[ctypes.CDLL]:
     """Yield the OpenBLAS of each package; one that is loaded already is not loaded again."""
     for package in ("numpy", "scipy"):
         spec = find_spec(package)
-        home = Path(spec.origin).parent if spec and spec.origin else None
-        for folder in FOLDERS if home else ():
+        if spec is None or spec.origin is None:
+            continue
+        home = Path(spec.origin).parent
+        for folder in FOLDERS:
             for path in sorted((home / folder.format(package=package)).glob("*openblas*")):
                 yield ctypes.CDLL(str(path.resolve()))

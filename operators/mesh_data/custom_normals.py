@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Final
 
 import bpy
 import numpy as np
@@ -11,7 +12,8 @@ from .attribute_values import read_attribute, store_values
 # While faces change: the normals of the corners as vectors, which Blender interpolates along cut edges.
 KEPT_NORMALS = "eigenparts_kept_normals"
 # In newer versions normals may be stored as vectors, which need no help.
-CUSTOM_NORMALS, VECTORS = "custom_normal", "FLOAT_VECTOR"
+CUSTOM_NORMALS: Final = "custom_normal"
+VECTORS: Final = "FLOAT_VECTOR"
 
 
 @contextmanager

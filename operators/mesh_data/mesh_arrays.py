@@ -4,13 +4,20 @@ Attributes we write are marked in a property of the mesh, so that nothing of the
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
+from typing import TypeVar
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..blender.known_values import elements_of, mesh_of
 from ..messages.user_errors import IN_EDIT_MODE, Refusal
+from .attribute_values import AttributeType, Domain, Values
+
+Number = TypeVar("Number", np.int32, np.float32)
 
 # Names of the attributes that are ours, one a line.
 OWN_ATTRIBUTES = "eigenparts_attributes"
@@ -30,10 +37,10 @@ class MeshArrays:
     edges : (E, 2) int64
     """
 
-    vertices: np.ndarray
-    triangles: np.ndarray
-    polygon_of_triangle: np.ndarray
-    edges: np.ndarray
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    polygon_of_triangle: NDArray[np.int64]
+    edges: NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -41,8 +48,8 @@ class OwnAttribute:
     """An attribute of ours: its name, what it holds and where, and the property its values are in."""
 
     name: str
-    data_type: str
-    domain: str
+    data_type: AttributeType
+    domain: Domain
     property_name: str = "value"
 
     def is_kind_of(self, attribute: bpy.types.Attribute) -> bool:
@@ -59,7 +66,7 @@ def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
     """Return the positions and the triangles of a mesh that is not in edit mode."""
     vertices = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     if len(vertices):
-        mesh.attributes["position"].data.foreach_get("vector", vertices)
+        elements_of(mesh.attributes["position"]).foreach_get("vector", vertices)
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles)
     return MeshArrays(
@@ -70,7 +77,7 @@ def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
     )
 
 
-def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
+def read_edges(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
     """Return the (E, 2) vertices of each edge."""
     edges = np.empty(2 * len(mesh.edges), dtype=np.int32)
     mesh.edges.foreach_get("vertices", edges)
@@ -79,45 +86,53 @@ def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
 
 def read_evaluated_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshArrays:
     """Return the mesh as its modifiers leave it; they may move it, but its faces must stay the same."""
-    evaluated = obj.evaluated_get(depsgraph).data
-    if _faces_digest(evaluated) != _faces_digest(obj.data):
+    evaluated = mesh_of(obj.evaluated_get(depsgraph))
+    if _faces_digest(evaluated) != _faces_digest(mesh_of(obj)):
         raise Refusal("The modifiers change the faces of the mesh; apply them first or analyze it without modifiers.")
     return read_mesh(evaluated)
 
 
 def read_object(context: bpy.types.Context, obj: bpy.types.Object, use_modifiers: bool) -> MeshArrays:
     """Return the mesh of an object, posed by its modifiers if that is wanted."""
-    return read_evaluated_mesh(obj, context.evaluated_depsgraph_get()) if use_modifiers else read_mesh(obj.data)
+    return read_evaluated_mesh(obj, context.evaluated_depsgraph_get()) if use_modifiers else read_mesh(mesh_of(obj))
 
 
-def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
+def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float64]:
     """Return the (V,) values of a float attribute of the vertices."""
     attribute = mesh.attributes.get(name)
     if attribute is None or (attribute.data_type, attribute.domain) != ("FLOAT", "POINT"):
         raise Refusal(f'The mesh has no attribute "{name}" with one decimal number for each vertex.')
-    values = np.empty(len(attribute.data), dtype=np.float32)
-    attribute.data.foreach_get("value", values)
+    elements = elements_of(attribute)
+    values = np.empty(len(elements), dtype=np.float32)
+    elements.foreach_get("value", values)
     return values.astype(np.float64)
 
 
-def polygon_of_triangle(mesh: bpy.types.Mesh) -> np.ndarray:
+def face_areas(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
+    """Return the (F,) areas of the faces."""
+    areas = np.empty(len(mesh.polygons), dtype=np.float32)
+    mesh.polygons.foreach_get("area", areas)
+    return areas.astype(np.float64)
+
+
+def polygon_of_triangle(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the (T,) polygon of each triangle."""
     polygons = np.empty(len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangle_polygons.foreach_get("value", polygons)
     return polygons
 
 
-def n_corners_of_polygon(mesh: bpy.types.Mesh) -> np.ndarray:
+def n_corners_of_polygon(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
     """Return the (F,) number of corners of each polygon."""
     # A polygon of n corners has n - 2 triangles, and they are read far faster than the polygons.
     return np.bincount(polygon_of_triangle(mesh), minlength=len(mesh.polygons)) + 2
 
 
-def vertex_of_corner(mesh: bpy.types.Mesh) -> np.ndarray:
+def vertex_of_corner(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Return the (C,) vertex at each corner of each polygon."""
     vertices = np.empty(len(mesh.loops), dtype=np.int32)
     if len(vertices):
-        mesh.attributes[".corner_vert"].data.foreach_get("value", vertices)
+        elements_of(mesh.attributes[".corner_vert"]).foreach_get("value", vertices)
     return vertices
 
 
@@ -128,8 +143,8 @@ def fingerprint(mesh: bpy.types.Mesh) -> str:
     digest = blake2b(_faces_digest(mesh), digest_size=16)
     positions = np.empty(3 * len(mesh.vertices), dtype=np.float32)
     if len(positions):
-        mesh.attributes["position"].data.foreach_get("vector", positions)
-    digest.update(positions)
+        elements_of(mesh.attributes["position"]).foreach_get("vector", positions)
+    digest.update(positions.data)
     return digest.hexdigest()
 
 
@@ -141,7 +156,7 @@ def refuse_foreign(mesh: bpy.types.Mesh, attributes: tuple[OwnAttribute, ...]) -
             raise Refusal(f'The mesh has an attribute "{own.name}" that is not from Eigenparts; rename or delete it.')
 
 
-def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: np.ndarray) -> None:
+def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: Values) -> None:
     """Store values in an attribute of ours, new or already there.
 
     Parameters
@@ -153,25 +168,34 @@ def write_attribute(mesh: bpy.types.Mesh, own: OwnAttribute, values: np.ndarray)
     if own.name not in mesh.attributes:
         mesh.attributes.new(own.name, type=own.data_type, domain=own.domain)
         mark_own(mesh, [own.name])
-    mesh.attributes[own.name].data.foreach_set(own.property_name, np.ascontiguousarray(values).ravel())
+    elements_of(mesh.attributes[own.name]).foreach_set(own.property_name, np.ascontiguousarray(values).ravel())
 
 
-def read_own_integers(mesh: bpy.types.Mesh, own: OwnAttribute) -> np.ndarray:
+def write_attributes(mesh: bpy.types.Mesh, values: Mapping[OwnAttribute, Values | None]) -> None:
+    """Store values in attributes of ours, as ``write_attribute`` does, and remove those that have None."""
+    remove_own_attributes(mesh, [own.name for own, column in values.items() if column is None])
+    for own, column in values.items():
+        if column is not None:
+            write_attribute(mesh, own, column)
+
+
+def read_own_integers(mesh: bpy.types.Mesh, own: OwnAttribute) -> NDArray[np.int32]:
     """Return the (n,) int32 values of an attribute of ours."""
     return _read_own(mesh, own, np.int32, 1)
 
 
-def read_own_floats(mesh: bpy.types.Mesh, own: OwnAttribute, n_components: int = 1) -> np.ndarray:
+def read_own_floats(mesh: bpy.types.Mesh, own: OwnAttribute, n_components: int = 1) -> NDArray[np.float32]:
     """Return the (n * n_components,) float32 values of an attribute of ours."""
     return _read_own(mesh, own, np.float32, n_components)
 
 
-def _read_own(mesh: bpy.types.Mesh, own: OwnAttribute, dtype: type, n_components: int) -> np.ndarray:
+def _read_own(mesh: bpy.types.Mesh, own: OwnAttribute, dtype: type[Number], n_components: int) -> NDArray[Number]:
     attribute = mesh.attributes.get(own.name)
     if attribute is None or not own.is_kind_of(attribute):
         raise Refusal(f'The attribute "{own.name}" of the analysis is gone; analyze the mesh again.')
-    values = np.empty(n_components * len(attribute.data), dtype=dtype)
-    attribute.data.foreach_get(own.property_name, values)
+    elements = elements_of(attribute)
+    values = np.empty(n_components * len(elements), dtype=dtype)
+    elements.foreach_get(own.property_name, values)
     return values
 
 
@@ -195,14 +219,22 @@ def mark_own(mesh: bpy.types.Mesh, names: list[str]) -> None:
     _set_own_names(mesh, [*own_names(mesh), *names])
 
 
+def mark_lost(mesh: bpy.types.Mesh, attributes: tuple[OwnAttribute, ...]) -> None:
+    """Mark those of some attributes as ours that a mesh has, of their type and domain, but that are not marked."""
+    marked = own_names(mesh)
+    lost = [own.name for own in attributes if own.name not in marked and own.is_on(mesh)]
+    if lost:
+        mark_own(mesh, lost)
+
+
 def _set_own_names(mesh: bpy.types.Mesh, names: list[str]) -> None:
     if names:
         mesh[OWN_ATTRIBUTES] = "\n".join(dict.fromkeys(names))
-    elif OWN_ATTRIBUTES in mesh:
+    elif mesh.get(OWN_ATTRIBUTES) is not None:
         del mesh[OWN_ATTRIBUTES]
 
 
 def _faces_digest(mesh: bpy.types.Mesh) -> bytes:
-    digest = blake2b(vertex_of_corner(mesh), digest_size=16)
-    digest.update(polygon_of_triangle(mesh))
+    digest = blake2b(vertex_of_corner(mesh).data, digest_size=16)
+    digest.update(polygon_of_triangle(mesh).data)
     return digest.digest()

@@ -13,12 +13,14 @@ from dataclasses import dataclass
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 
 # Crossings of one edge that are nearer to each other than this fraction of it are one vertex: no slivers.
 SAME_PLACE = 0.05
 
+Ints = NDArray[np.int64]
 Arcs = tuple[int, ...]
 
 
@@ -36,12 +38,12 @@ class CutFaces:
         The face each new one was cut from.
     """
 
-    face: np.ndarray
-    arcs: np.ndarray
-    origin: np.ndarray
+    face: Ints
+    arcs: Ints
+    origin: Ints
 
 
-def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: np.ndarray) -> CutFaces:
+def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: Ints) -> CutFaces:
     """Insert borders into a mesh.
 
     Parameters
@@ -66,7 +68,7 @@ def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: 
 class _Cut:
     """A mesh while it is cut."""
 
-    def __init__(self, edited: bmesh.types.BMesh, crossings: compute.Crossings, arc_of_vertex: np.ndarray) -> None:
+    def __init__(self, edited: bmesh.types.BMesh, crossings: compute.Crossings, arc_of_vertex: Ints) -> None:
         for elements in (edited.verts, edited.edges, edited.faces):
             elements.ensure_lookup_table()
         self._n_faces = len(edited.faces)
@@ -110,28 +112,30 @@ class _Cut:
         self._edited.faces.index_update()
         arcs = {face: self._arcs_of_face(face) for pieces in self._pieces for face in pieces}
         # A piece between borders alone, in a corner where three parts meet, stays what its polygon was.
-        found = [face for face in arcs if arcs[face]]
+        bordered = [face for face in arcs if arcs[face]]
         origin = {piece.index: pieces[0].index for pieces in self._pieces for piece in pieces[1:]}
         return CutFaces(
-            np.array([face.index for face in found], dtype=np.int64),
-            np.array([arcs[face] for face in found], dtype=np.int64).reshape(len(found), self._arcs_of_vertex.shape[1]),
+            np.array([face.index for face in bordered], dtype=np.int64),
+            np.array([arcs[face] for face in bordered], dtype=np.int64).reshape(
+                len(bordered), self._arcs_of_vertex.shape[1]
+            ),
             np.array([origin[face] for face in range(self._n_faces, len(self._edited.faces))], dtype=np.int64),
         )
 
     def _split_edge(self, edge: bmesh.types.BMEdge, rows: range) -> None:
         first, last = edge.verts
-        here, arcs, done = first, self._arcs_at(first), 0.0
+        reached, arcs, done = first, self._arcs_at(first), 0.0
         for row in rows:
             parameter = self._parameter[row]
             if parameter == 1.0:
                 self._vertex_of_row[row] = last
                 continue
             if parameter > done + SAME_PLACE:
-                behind, vertex = bmesh.utils.edge_split(edge, here, (parameter - done) / (1 - done))
-                edge, passed = (behind, edge) if here in edge.verts else (edge, behind)
+                behind, vertex = bmesh.utils.edge_split(edge, reached, (parameter - done) / (1 - done))
+                edge, passed = (behind, edge) if reached in edge.verts else (edge, behind)
                 self._arcs_of_piece[passed] = arcs
-                here, done = vertex, parameter
-            self._vertex_of_row[row] = here
+                reached, done = vertex, parameter
+            self._vertex_of_row[row] = reached
             arcs = self._arcs_behind[row]
         # Where the last crossings are on the far vertex itself, this piece lies before them.
         reaches_end = self._parameter[rows[-1]] < 1.0

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 
 import bpy
 
+from ..blender.known_values import present
+
 # On the screen: the colour type that each area had, by its place among the areas.
 PREVIOUS_TYPES = "eigenparts_color_types"
 
@@ -23,13 +25,14 @@ def restore_colour_types(context: bpy.types.Context) -> None:
         previous = dict(screen.get(PREVIOUS_TYPES, {})).get(str(place))
         if previous is not None and shading.color_type == "VERTEX":
             shading.color_type = previous
-    for window in context.window_manager.windows:
-        if PREVIOUS_TYPES in window.screen:
+    for window in present(context.window_manager).windows:
+        if window.screen.get(PREVIOUS_TYPES) is not None:
             del window.screen[PREVIOUS_TYPES]
 
 
 def _shadings(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Screen, int, bpy.types.View3DShading]]:
-    for window in context.window_manager.windows:
+    for window in present(context.window_manager).windows:
         for place, area in enumerate(window.screen.areas):
-            if area.type == "VIEW_3D":
-                yield window.screen, place, area.spaces.active.shading
+            space = area.spaces.active
+            if isinstance(space, bpy.types.SpaceView3D):
+                yield window.screen, place, space.shading

@@ -1,1 +1,1 @@
-"""What a mesh remembers of its analysis, corrections, names and registration. Imports messages and mesh_data."""
+"""The memory of a mesh: its analysis, corrections, names and registration. Imports messages and mesh_data."""

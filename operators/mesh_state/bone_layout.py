@@ -1,18 +1,13 @@
-"""Which bones a mesh was given, kept with its analysis so that registered meshes can be given the same ones."""
+"""The layout of the bones that a mesh was given, kept with its analysis so that registered meshes get the same."""
 
 from __future__ import annotations
 
 import json
 from typing import Any
 
-import bpy
-
 from ... import compute
-from . import registration_record
-from .state import STATE
+from .schema import BONE_LAYOUT
 
-# In the state: the bones of the last skeleton of a mesh, told by its parts, as JSON.
-LAYOUT = "bone_layout"
 # Bounds of what is read back: joints in a limb, and the numbers of parts.
 MOST_JOINTS = 48
 HIGHEST_PART = 100_000
@@ -20,11 +15,10 @@ HIGHEST_PART = 100_000
 NO_BONES = "{} has no armature of Eigenparts yet, so these bones are the mesh's own; create that armature first."
 
 
-def remember(mesh: bpy.types.Mesh, layout: compute.BoneLayout | None) -> None:
-    """Keep the layout of the bones that a mesh was given; None if there is none."""
+def packed_layout(layout: compute.BoneLayout | None) -> dict[str, Any]:
+    """Return the layout of the bones that a mesh was given as a text of the state; None if there is none."""
     if layout is None:
-        mesh[STATE].pop(LAYOUT, None)
-        return
+        return {BONE_LAYOUT: None}
     limbs = [
         {
             "tips": sorted(tips),
@@ -36,26 +30,11 @@ def remember(mesh: bpy.types.Mesh, layout: compute.BoneLayout | None) -> None:
         for tips, limb in layout.limbs.items()
     ]
     root = [sorted(tips) for tips in layout.root]
-    mesh[STATE][LAYOUT] = json.dumps({"parts": sorted(layout.parts), "root": root, "limbs": limbs})
+    return {BONE_LAYOUT: json.dumps({"parts": sorted(layout.parts), "root": root, "limbs": limbs})}
 
 
-def of_reference(mesh: bpy.types.Mesh) -> compute.BoneLayout | None:
-    """Return the layout of the mesh that this one is registered to; None if it is not, or it has no bones."""
-    reference = reference_of(mesh)
-    return None if reference is None else read(reference.data)
-
-
-def reference_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
-    """Return the mesh object that a mesh is registered to, if it is there."""
-    match = registration_record.read(mesh)
-    reference = bpy.data.objects.get(match.reference) if match is not None else None
-    return reference if reference is not None and reference.type == "MESH" else None
-
-
-def read(mesh: bpy.types.Mesh) -> compute.BoneLayout | None:
-    """Return the layout that a mesh remembers; None if there is none, or it makes no sense."""
-    state = mesh.get(STATE)
-    text = state.get(LAYOUT) if hasattr(state, "to_dict") else None
+def unpacked_layout(text: Any) -> compute.BoneLayout | None:
+    """Return the layout in a text; None if there is none, or it makes no sense."""
     if not isinstance(text, str):
         return None
     try:

@@ -1,4 +1,4 @@
-"""What is stored of corrections by hand: plain numbers in the state, and the part of each painted face."""
+"""Corrections by hand as they are stored: plain numbers in the state, and the part of each painted face."""
 
 from __future__ import annotations
 
@@ -8,105 +8,81 @@ from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers, remove_own_attributes, write_attribute
-from .serialization import UNREADABLE, packed, packed_array, unpacked, unpacked_array
+from ..mesh_data.attribute_values import Values
+from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers
+from .schema import CORRECTIONS, PAINTED, PIECE, REDRAWN, TREE
+from .serialization import UNREADABLE, packed_array, unpacked_array
+from .stored_analysis import packed_branches, unpacked_branches
 from .validation import are_sound_branches, lie_within
 
-# Groups of the state.
-CORRECTIONS, PIECES = "corrections", "pieces"
-# The part each face was painted with and one more, so that 0 is none.
-PAINTED = OwnAttribute("eigenparts_painted", "INT", "FACE")
-# The branches divided as corrections need them; the attribute is there only while some do.
-PIECE = OwnAttribute(".eigenparts_piece", "INT", "FACE")
-ATTRIBUTES = (PAINTED, PIECE)
 # More parts of one's own than anybody makes by hand.
 MOST_OWN_PARTS = 1000
+# Columns of a stored correction.
+COLUMNS = ("kind", "part", "other", "value", "level", "mode")
 
 
-def read(state: Any) -> tuple[compute.Correction, ...]:
+def unpacked_items(stored: Any) -> tuple[compute.Correction, ...]:
     """Return the corrections in a state, as far as they make sense; cheap enough for every redraw."""
-    group = state.get(CORRECTIONS) if hasattr(state, "to_dict") else None
+    group: Any = stored.get(CORRECTIONS) if hasattr(stored, "to_dict") else None
     if not hasattr(group, "to_dict"):
         return ()
     rows = [group[name] for name in sorted(filter(str.isdecimal, group.keys()), key=int)]
     items = [_item(row) for row in rows if hasattr(row, "to_dict")]
-    n_numbers = first_own_part(state) + MOST_OWN_PARTS
+    n_numbers = _n_numbers(stored) if items else 0
     return tuple(item for item in items if item is not None and _makes_sense(item, n_numbers))
 
 
-def first_own_part(state: Any) -> int:
-    """Return the least number that no part of any level has."""
-    try:
-        return compute.number_behind(int(state["tree_0"]["n_roots"]), int(state["tree_0"]["n_features"]))
-    except UNREADABLE:
-        return 0
-
-
-def packed_items(items: tuple[compute.Correction, ...]) -> dict[str, dict[str, Any]]:
+def packed_items(items: tuple[compute.Correction, ...]) -> dict[str, Any]:
     """Return corrections as a group of the state."""
-    names = ("kind", "part", "other", "value", "level", "mode")
-    return {str(row): {name: getattr(item, name) for name in names} for row, item in enumerate(items)}
+    rows = {str(row): {name: getattr(item, name) for name in COLUMNS} for row, item in enumerate(items)}
+    return {CORRECTIONS: rows}
 
 
-def read_painted(mesh: bpy.types.Mesh) -> np.ndarray:
+def read_painted(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
     """Return the (F,) int64 part each face was painted with, -1 elsewhere."""
     if PAINTED.name not in own_names(mesh) or PAINTED.name not in mesh.attributes:
         return np.full(len(mesh.polygons), -1)
     return read_own_integers(mesh, PAINTED).astype(np.int64) - 1
 
 
-def write_painted(mesh: bpy.types.Mesh, painted: np.ndarray) -> None:
-    """Store the part of each painted face; nothing is left where none is."""
-    if (painted >= 0).any():
-        write_attribute(mesh, PAINTED, (painted + 1).astype(np.int32))
-    else:
-        remove_own_attributes(mesh, [PAINTED.name])
+def painted_attribute(painted: NDArray[np.int64]) -> dict[OwnAttribute, Values | None]:
+    """Return the part of each painted face as an attribute; None where no face is painted."""
+    return {PAINTED: (painted + 1).astype(np.int32) if (painted >= 0).any() else None}
 
 
-def write_pieces(
-    mesh: bpy.types.Mesh, state: Any, part_tree: compute.PartTree, corrections: compute.Corrections
-) -> None:
-    """Store branches that were divided for corrections."""
-    tables = {
-        **{f"branches_{i}": packed(pieces) for i, pieces in enumerate(part_tree.branches)},
-        "side": packed_array(corrections.side),
-        "painted": packed_array(corrections.painted),
-    }
-    # Without their tables pieces are made again, so whatever fails from here on leaves nothing that is not true.
-    if PIECES in state:
-        del state[PIECES]
-    write_attribute(mesh, PIECE, part_tree.branches[0].of_face)
-    state[PIECES] = tables
+def redrawn_attribute(
+    part_tree: compute.PartTree, corrections: compute.Corrections
+) -> dict[OwnAttribute, Values | None]:
+    """Return the branch of each face as corrections divide them; None where they divide no face."""
+    return {PIECE: part_tree.branches[0].of_face if compute.needs_faces(corrections.items) else None}
 
 
-def drop_pieces(mesh: bpy.types.Mesh, state: Any) -> None:
-    """Forget divided branches: there is no need for them, or they are not true any more."""
-    remove_own_attributes(mesh, [PIECE.name])
-    if PIECES in state:
-        del state[PIECES]
+def packed_redrawn(part_tree: compute.PartTree, corrections: compute.Corrections) -> dict[str, Any]:
+    """Return what goes into the state beside ``redrawn_attribute``; None where no face is divided."""
+    if not compute.needs_faces(corrections.items):
+        return {REDRAWN: None}
+    sides = {"side": packed_array(corrections.side), "painted": packed_array(corrections.painted)}
+    return {REDRAWN: {**packed_branches(part_tree.branches), **sides}}
 
 
-def read_pieces(
-    mesh: bpy.types.Mesh, state: Any, part_tree: compute.PartTree, items: tuple[compute.Correction, ...]
+def read_redrawn(
+    mesh: bpy.types.Mesh, stored: Any, part_tree: compute.PartTree, items: tuple[compute.Correction, ...]
 ) -> tuple[compute.PartTree, compute.Corrections] | None:
-    """Return a part tree with divided branches; None if they are not there or damaged and have to be made again."""
-    group = state.get(PIECES)
+    """Return a part tree with its redrawn branches; None if they are not there, or damaged."""
+    group = stored.get(REDRAWN)
     if not hasattr(group, "to_dict") or PIECE.name not in own_names(mesh) or PIECE.name not in mesh.attributes:
         return None
     try:
-        of_face = read_own_integers(mesh, PIECE)
-        branches = tuple(
-            compute.Branches(of_face=of_face, **unpacked(group[f"branches_{i}"], compute.Branches))
-            for i in range(len(part_tree.trees))
-        )
+        branches = unpacked_branches(group, [read_own_integers(mesh, PIECE)] * len(part_tree.trees))
         side, painted = unpacked_array(group["side"], "int64"), unpacked_array(group["painted"], "int64")
         n_branches = branches[0].arc.size
         is_sound = (
             side.shape == (len(items), n_branches)
             and painted.shape == (n_branches,)
-            and lie_within(painted, -1, first_own_part(state) + MOST_OWN_PARTS)
+            and lie_within(painted, -1, _n_numbers(stored))
             and all(
                 pieces.arc.size == n_branches and are_sound_branches(pieces, tree.parent.size)
                 for pieces, tree in zip(branches, part_tree.trees, strict=True)
@@ -117,17 +93,13 @@ def read_pieces(
     return (replace(part_tree, branches=branches), compute.Corrections(items, side, painted)) if is_sound else None
 
 
-def carry_over(
-    mesh: bpy.types.Mesh,
-    items: tuple[compute.Correction, ...],
-    old: compute.PartTree,
-    new: compute.PartTree,
-    area: np.ndarray,
-) -> tuple[compute.Correction, ...]:
-    """Return corrections for another analysis of the mesh, and repaint its faces with the new numbers."""
-    found = compute.carried(items, old, new, area)
-    write_painted(mesh, compute.carried_painting(read_painted(mesh), items, found))
-    return compute.renumbered(items, found, old.hierarchy, new.hierarchy)
+def _n_numbers(stored: Any) -> int:
+    """Return a number above that of any part: those of levels, and those that were made by hand."""
+    try:
+        tree = stored[TREE.format(0)]
+        return compute.number_behind(int(tree["n_roots"]), int(tree["n_features"])) + MOST_OWN_PARTS
+    except UNREADABLE:
+        return MOST_OWN_PARTS
 
 
 def _item(row: Any) -> compute.Correction | None:

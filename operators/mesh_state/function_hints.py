@@ -1,40 +1,35 @@
-"""Which eigenfunctions suit a mesh: kept from an analysis that computed some, for the panel and for the report."""
+"""The eigenfunctions that suit a mesh: kept from an analysis that computed some, for the panel and for the report."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import bpy
-
 from ... import compute
-from .state import STATE
+from .schema import FUNCTION_HINTS
 
-# In the state: for each judged function, the best first, its number and how many protrusions its parts hold.
-HINTS = "function_hints"
 MOST_SHOWN = 3
 
 
-def store(mesh: bpy.types.Mesh, hints: tuple[compute.FunctionHint, ...]) -> None:
-    """Keep what was judged; nothing is left where nothing was."""
-    rows = [number for hint in hints for number in (hint.number, hint.n_held, hint.n_protrusions)]
-    if rows:
-        mesh[STATE][HINTS] = rows
-    elif HINTS in mesh[STATE]:
-        del mesh[STATE][HINTS]
+def packed_hints(hints: tuple[compute.FunctionHint, ...]) -> dict[str, Any]:
+    """Return what was judged as a list of the state; nothing where nothing was."""
+    numbers = [number for row in rows_of(hints) for number in row]
+    return {FUNCTION_HINTS: numbers} if numbers else {}
 
 
-def read(mesh: bpy.types.Mesh) -> list[tuple[int, int, int]]:
+def rows_of(hints: tuple[compute.FunctionHint, ...]) -> list[tuple[int, int, int]]:
     """Return (number, protrusions held, protrusions of the shape) of each judged function, the best first."""
-    state = mesh.get(STATE)
-    rows: Any = state.get(HINTS) if hasattr(state, "to_dict") else None
+    return [(hint.number, hint.n_held, hint.n_protrusions) for hint in hints]
+
+
+def unpacked_hints(rows: Any) -> list[tuple[int, int, int]]:
+    """Return (number, protrusions held, protrusions of the shape) of each judged function, the best first."""
     if getattr(rows, "typecode", None) != "i" or len(rows) % 3:
         return []
-    return [tuple(rows[k : k + 3]) for k in range(0, len(rows), 3)]
+    return [(rows[k], rows[k + 1], rows[k + 2]) for k in range(0, len(rows), 3)]
 
 
-def sentence(mesh: bpy.types.Mesh) -> str:
+def sentence(hints: list[tuple[int, int, int]]) -> str:
     """Return which function suits best; empty if it is not known."""
-    hints = read(mesh)
     if not hints or hints[0][2] == 0:
         return ""
     number, n_held, n_protrusions = hints[0]

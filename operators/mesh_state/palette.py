@@ -1,6 +1,7 @@
 """Colours of parts: distinct for colour-blind people too, on a neutral grey body."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 BODY = "a6a6a6"
 # Found by annealing among clear colours, without the dark and dull ones that shading makes muddy: the first 3, 6, 10,
@@ -22,7 +23,7 @@ def use_colours(colours: list[tuple[float, ...]]) -> None:
     _in_use[:] = colours
 
 
-def colours_of_labels(n_labels: int) -> np.ndarray:
+def colours_of_labels(n_labels: int) -> NDArray[np.float32]:
     """Return (n_labels, 4) float32 linear RGBA, row 0 the body; the colours repeat after the last."""
     body, *parts = _in_use
     rgb = [body, *(parts[label % len(parts)] for label in range(n_labels - 1))][:n_labels]

@@ -1,29 +1,19 @@
-"""Which parts of a mesh are left and right, kept with its analysis so that registered meshes can be told alike."""
+"""The left and right parts of a mesh, kept with its analysis so that registered meshes get the same sides."""
 
-import bpy
+from typing import Any
 
-from . import bone_layout
-from .state import STATE
+from .schema import PART_SIDES
 
-# In the state: for each part that has a side, the part both sides are called after, and +1 for left, -1 for right.
-SIDES = "part_sides"
+Sides = dict[int, tuple[int, int]]
 
 
-def remember(mesh: bpy.types.Mesh, pairing: dict[int, tuple[int, int]]) -> None:
-    """Keep the sides of the parts that a mesh shows."""
-    mesh[STATE][SIDES] = {str(part): list(pair) for part, pair in pairing.items()}
+def packed_sides(sides: Sides) -> dict[str, Any]:
+    """Return the sides of the parts that a mesh shows as a group of the state."""
+    return {PART_SIDES: {str(part): list(pair) for part, pair in sides.items()}}
 
 
-def of_reference(mesh: bpy.types.Mesh) -> dict[int, tuple[int, int]]:
-    """Return the sides of the mesh that this one is registered to; empty if it is not, or they are not known."""
-    reference = bone_layout.reference_of(mesh)
-    return {} if reference is None else read(reference.data)
-
-
-def read(mesh: bpy.types.Mesh) -> dict[int, tuple[int, int]]:
-    """Return the sides that a mesh remembers, as far as they can be understood."""
-    state = mesh.get(STATE)
-    group = state.get(SIDES) if hasattr(state, "to_dict") else None
+def unpacked_sides(group: Any) -> Sides:
+    """Return the sides in a group, as far as they can be understood."""
     if not hasattr(group, "to_dict"):
         return {}
     rows = {part: group[part] for part in group if part.isdecimal()}

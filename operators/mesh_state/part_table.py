@@ -1,4 +1,4 @@
-"""What the parts of a mesh are called and which colours they have: kept by part, whatever level is shown.
+"""Names and colours of the parts of a mesh: kept by part, whatever level is shown.
 
 Until the user gives a part a name it is called after the part it grew out of when it was first seen, so that a name
 never changes by itself: "Part 2.1" is the first part that was found in "Part 2".
@@ -6,62 +6,113 @@ never changes by itself: "Part 2.1" is the first part that was found in "Part 2"
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import count
 from typing import Any
 
-import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from .palette import colours_of_labels
-from .state import STATE
+from .schema import PART_COLOURS, PART_NAMES, PART_NUMBERS
 
 BODY = "Body"
-# Groups of the state, each keyed by the number of the part.
-NUMBERS, NAMES, COLOURS = "part_numbers", "part_names", "part_colours"
-TABLES = (NUMBERS, NAMES, COLOURS)
 
 
-def number_parts(mesh: bpy.types.Mesh, parts: compute.Parts) -> None:
-    """Give parts that were never seen before their place under the part they grow out of."""
-    numbers = _table(mesh, NUMBERS)
-    taken = {tuple(place) for place in numbers.values()}
-    new = {}
+@dataclass(frozen=True)
+class PartTable:
+    """Places, names and colours of the parts of a mesh, by their numbers.
+
+    Attributes
+    ----------
+    places : dict of int to (int, int)
+        For each part that was ever seen, the part that it grew out of and which of its parts it was, from 1.
+    names : dict of int to str
+        Those that the user gave.
+    colours : dict of int to (float, float, float)
+        Those that the user gave, in linear RGB.
+    """
+
+    places: dict[int, tuple[int, int]] = field(default_factory=dict)
+    names: dict[int, str] = field(default_factory=dict)
+    colours: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+
+    def name_of(self, part: int) -> str:
+        """Return the name of a part: the user's, or one that says where it belongs."""
+        suffix = ""
+        # Parents are numbered before their children; the limit is for tables that somebody else wrote.
+        for _ in range(len(self.places) + 1):
+            if part in self.names:
+                return self.names[part] + suffix
+            if part == 0:
+                return BODY + suffix
+            parent, number = self.places.get(part, (0, part))
+            if parent == 0:
+                return f"Part {number}{suffix}"
+            part, suffix = parent, f".{number}{suffix}"
+        return f"Part {part}"
+
+    def colours_of(self, n_labels: int) -> NDArray[np.float32]:
+        """Return (n_labels, 4) float32 linear RGBA, row 0 the body."""
+        table = colours_of_labels(n_labels)
+        for part, colour in self.colours.items():
+            if part < n_labels:
+                table[part, :3] = colour
+        return table
+
+    def renamed(self, part: int, name: str) -> PartTable:
+        """Return the table with a name for a part; an empty one brings its first name back, a taken one gets a number.
+
+        "Arm" becomes "Arm.001" if another part has that name.
+        """
+        others = {other: given for other, given in self.names.items() if other != part}
+        table = replace(self, names=others)
+        name = name.strip()
+        if not name or name == table.name_of(part):
+            return table
+        taken = {self.name_of(other) for other in (0, *self.places) if other != part}
+        return replace(self, names={**others, part: _free_name(name, taken)})
+
+    def coloured(self, part: int, colour: tuple[float, float, float]) -> PartTable:
+        """Return the table with a colour for a part, in linear RGB."""
+        return replace(self, colours={**self.colours, part: colour})
+
+
+def number_parts(table: PartTable, parts: compute.Parts) -> PartTable:
+    """Return a table in which parts that were never seen before have their place under the part they grow out of."""
+    places, taken = dict(table.places), set(table.places.values())
     for part, parent in zip(parts.id.tolist(), parts.parent.tolist(), strict=True):
-        if part and str(part) not in numbers:
-            place = next(place for place in _places(parent) if place not in taken)
-            taken.add(place)
-            new[str(part)] = list(place)
-    if new or NUMBERS not in mesh[STATE]:
-        mesh[STATE][NUMBERS] = {**{part: list(place) for part, place in numbers.items()}, **new}
+        if part and part not in places:
+            places[part] = next((parent, number) for number in count(1) if (parent, number) not in taken)
+            taken.add(places[part])
+    return replace(table, places=places)
 
 
-def name_of(mesh: bpy.types.Mesh, part: int) -> str:
-    """Return the name of a part: the user's, or one that tells where it belongs."""
-    return _name(part, _table(mesh, NAMES), _table(mesh, NUMBERS))
+def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str, Any]:
+    """Return a table as groups of the state, only those that are not as they were before if that is given."""
+    columns: dict[str, Mapping[int, Any]] = {
+        PART_NUMBERS: table.places,
+        PART_NAMES: table.names,
+        PART_COLOURS: table.colours,
+    }
+    if before is not None:
+        stored = {PART_NUMBERS: before.places, PART_NAMES: before.names, PART_COLOURS: before.colours}
+        columns = {name: column for name, column in columns.items() if column != stored[name]}
+    return {name: {str(part): _plain(value) for part, value in column.items()} for name, column in columns.items()}
 
 
-def rename(mesh: bpy.types.Mesh, part: int, name: str) -> None:
-    """Give a part a name; an empty one brings its first name back, and one that is taken gets a number."""
-    names = {other: given for other, given in _table(mesh, NAMES).items() if other != str(part)}
-    name = name.strip()
-    if name and name != _name(part, names, _table(mesh, NUMBERS)):
-        names[str(part)] = _free_name(name, {name_of(mesh, other) for other in _known(mesh) if other != part})
-    mesh[STATE][NAMES] = names
+def unpacked_table(get: Callable[[str], Any]) -> PartTable:
+    """Return a table as far as it can be understood, from a call that gives a stored group by its name."""
+    places = _rows(get(PART_NUMBERS), 2, ("i",))
+    names = {part: name for part, name in _by_part(get(PART_NAMES)).items() if isinstance(name, str)}
+    return replace(unpacked_colours(get), places=places, names=names)
 
 
-def colours(mesh: bpy.types.Mesh, n_labels: int) -> np.ndarray:
-    """Return (n_labels, 4) float32 linear RGBA, row 0 the body."""
-    table = colours_of_labels(n_labels)
-    for part, colour in _table(mesh, COLOURS).items():
-        if part.isdecimal() and int(part) < n_labels and len(colour) == 3:
-            table[int(part), :3] = colour
-    return table
-
-
-def set_colour(mesh: bpy.types.Mesh, part: int, colour: tuple[float, float, float]) -> None:
-    """Give a part a colour of its own, in linear RGB."""
-    mesh[STATE][COLOURS] = {**_table(mesh, COLOURS), str(part): list(colour)}
+def unpacked_colours(get: Callable[[str], Any]) -> PartTable:
+    """Return a table with the colours alone, likewise."""
+    return PartTable(colours=_rows(get(PART_COLOURS), 3, ("f", "d")))
 
 
 def in_tree_order(parts: compute.Parts) -> Iterator[tuple[int, int]]:
@@ -79,47 +130,20 @@ def in_tree_order(parts: compute.Parts) -> Iterator[tuple[int, int]]:
         waiting += [(child, depth + 1) for child in reversed(rows_of.pop(int(parts.id[row]), []))]
 
 
-def _name(part: int, names: dict[str, str], numbers: dict[str, Any]) -> str:
-    suffix = ""
-    # Parents are numbered before their children; the limit is for tables that somebody else wrote.
-    for _ in range(len(numbers) + 1):
-        if str(part) in names:
-            return names[str(part)] + suffix
-        if part == 0:
-            return BODY + suffix
-        parent, number = numbers.get(str(part), (0, part))
-        if parent == 0:
-            return f"Part {number}{suffix}"
-        part, suffix = parent, f".{number}{suffix}"
-    return f"Part {part}"
-
-
-def _places(parent: int) -> Iterator[tuple[int, int]]:
-    number = 1
-    while True:
-        yield parent, number
-        number += 1
-
-
 def _free_name(name: str, taken: set[str]) -> str:
     candidates = [name, *(f"{name}.{number:03}" for number in range(1, len(taken) + 2))]
     return next(candidate for candidate in candidates if candidate not in taken)
 
 
-def _known(mesh: bpy.types.Mesh) -> list[int]:
-    return [0, *(int(part) for part in _table(mesh, NUMBERS) if part.isdecimal())]
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
 
 
-def _table(mesh: bpy.types.Mesh, name: str) -> dict[str, Any]:
-    """Return one of the tables as far as it can be understood."""
-    state = mesh.get(STATE)
-    group = state.get(name) if hasattr(state, "to_dict") else None
-    if not hasattr(group, "to_dict"):
-        return {}
-    values = {part: group[part] for part in group if part.isdecimal()}
-    if name == NAMES:
-        return {part: value for part, value in values.items() if isinstance(value, str)}
-    # Lists of numbers are read back as arrays, and nothing else is.
-    n_numbers, kinds = (2, "i") if name == NUMBERS else (3, "fd")
-    rows = {part: value for part, value in values.items() if getattr(value, "typecode", None) in tuple(kinds)}
-    return {part: tuple(value) for part, value in rows.items() if len(value) == n_numbers}
+def _by_part(group: Any) -> dict[int, Any]:
+    return {int(part): group[part] for part in group if part.isdecimal()} if hasattr(group, "to_dict") else {}
+
+
+def _rows(group: Any, n_numbers: int, kinds: tuple[str, ...]) -> dict[int, Any]:
+    """Return rows of so many numbers; lists of numbers are read back as arrays, and nothing else is."""
+    arrays = {part: row for part, row in _by_part(group).items() if getattr(row, "typecode", None) in kinds}
+    return {part: tuple(row) for part, row in arrays.items() if len(row) == n_numbers}

@@ -1,15 +1,16 @@
-"""What a mesh remembers of its registration, and its own names and colours while it shows those of another."""
+"""The registration of a mesh as it is stored, and its own names and colours while it shows those of another."""
 
-from collections.abc import Iterator
+from __future__ import annotations
+
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import bpy
 
 from ..messages.user_errors import Refusal
-from .part_table import TABLES
+from .part_table import PartTable, packed_table, unpacked_table
+from .schema import REGISTRATION
 from .serialization import UNREADABLE
-from .state import REGISTRATION, STATE
 
 # In the registration: the tables of parts that are the mesh's own, and the object they are registered to, which may be
 # renamed; its name is kept beside it for files that the object is not in.
@@ -26,7 +27,7 @@ NOT_ITS_OWN = "The mesh shows the parts of another object, which have no borders
 
 @dataclass(frozen=True)
 class Match:
-    """How a mesh was matched with its reference, for the panel and for trying again.
+    """The match of a mesh with its reference, for the panel and for trying again.
 
     Attributes
     ----------
@@ -60,34 +61,46 @@ class Match:
     by_diagrams: tuple[int, ...] = ()
 
 
-def remember(
-    mesh: bpy.types.Mesh, tables: dict[str, Any], match: Match, reference: bpy.types.Object | None = None
-) -> None:
-    """Give an analyzed mesh the names and colours in the tables of its reference, and keep its own and the match."""
-    take_back(mesh)
-    own = tables_of(mesh)
-    _set_tables(mesh, tables)
-    mesh[STATE][REGISTRATION] = {**asdict(match), OWN_TABLES: own}
-    if reference is not None:
-        mesh[STATE][REGISTRATION][REFERENCE_OBJECT] = reference
+@dataclass(frozen=True)
+class Registration:
+    """The registration of a mesh.
+
+    Attributes
+    ----------
+    match : Match or None
+        None if what is stored makes no sense.
+    reference : Object or None
+        The object that the mesh is registered to, whatever its name is by now; None if it is not known.
+    own_parts : PartTable
+        Names and colours of the mesh's own parts.
+    """
+
+    match: Match | None
+    reference: bpy.types.Object | None
+    own_parts: PartTable
 
 
-def take_back(mesh: bpy.types.Mesh) -> None:
-    """Forget the registration, if there is one, and give the mesh its own names and colours again."""
-    group = _group(mesh)
-    if group is None:
-        return
-    own = group.get(OWN_TABLES)
-    _set_tables(mesh, own.to_dict() if hasattr(own, "to_dict") else {})
-    del mesh[STATE][REGISTRATION]
+def packed_registration(match: Match, reference: bpy.types.Object | None, own_parts: PartTable) -> dict[str, Any]:
+    """Return a registration as a group of the state; the reference is None if it is in another file."""
+    group = {**asdict(match), OWN_TABLES: packed_table(own_parts)}
+    return {REGISTRATION: group if reference is None else {**group, REFERENCE_OBJECT: reference}}
 
 
-def read(mesh: bpy.types.Mesh) -> Match | None:
-    """Return how a mesh was matched; None if it was not, or what is stored makes no sense."""
-    group = _group(mesh)
-    if group is None:
-        return None
-    reference = reference_object(mesh)
+def unpacked_registration(group: Any) -> Registration:
+    """Return the registration in a group, as far as it can be understood."""
+    reference, tables = group.get(REFERENCE_OBJECT), group.get(OWN_TABLES)
+    reference = reference if isinstance(reference, bpy.types.Object) else None
+    own_parts = unpacked_table(tables.get) if hasattr(tables, "to_dict") else PartTable()
+    return Registration(_match(group, reference), reference, own_parts)
+
+
+def refuse_registered(registration: Registration | None) -> None:
+    """Raise a Refusal if the parts that a mesh shows are not those of one of its levels."""
+    if registration is not None:
+        raise Refusal(NOT_ITS_OWN)
+
+
+def _match(group: Any, reference: bpy.types.Object | None) -> Match | None:
     try:
         order, signs = (tuple(int(number) for number in group[name]) for name in ("order", "signs"))
         match = Match(
@@ -117,43 +130,3 @@ def _makes_sense(match: Match) -> bool:
         and 0 <= match.confidence <= 1
         and 0 <= match.alternative <= match.n_alternatives
     )
-
-
-def reference_object(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
-    """Return the object that a mesh is registered to, whatever its name is by now; None if it is not known."""
-    found = (_group(mesh) or {}).get(REFERENCE_OBJECT)
-    return found if isinstance(found, bpy.types.Object) else None
-
-
-def registered_objects(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Object, Match]]:
-    """Yield the objects of the view that show the parts of another, with how they were matched."""
-    for obj in context.view_layer.objects:
-        match = read(obj.data) if obj.type == "MESH" else None
-        if match is not None:
-            yield obj, match
-
-
-def refuse_registered(mesh: bpy.types.Mesh) -> None:
-    """Raise a Refusal if the parts that a mesh shows are not those of one of its levels."""
-    if _group(mesh) is not None:
-        raise Refusal(NOT_ITS_OWN)
-
-
-def _group(mesh: bpy.types.Mesh) -> Any:
-    state = mesh.get(STATE)
-    group = state.get(REGISTRATION) if hasattr(state, "to_dict") else None
-    return group if hasattr(group, "to_dict") else None
-
-
-def tables_of(mesh: bpy.types.Mesh) -> dict[str, Any]:
-    """Return the names and colours of the parts of an analyzed mesh, as they are stored."""
-    state = mesh[STATE]
-    return {name: state[name].to_dict() for name in TABLES if hasattr(state.get(name), "to_dict")}
-
-
-def _set_tables(mesh: bpy.types.Mesh, tables: dict[str, Any]) -> None:
-    for name in TABLES:
-        if name in tables:
-            mesh[STATE][name] = tables[name]
-        elif name in mesh[STATE]:
-            del mesh[STATE][name]

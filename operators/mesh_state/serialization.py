@@ -8,6 +8,7 @@ from dataclasses import fields
 from typing import Any, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 # What reading something else than was written may raise.
 UNREADABLE = (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError)
@@ -23,7 +24,7 @@ def packed(record: Any, rows: slice = slice(None)) -> dict[str, Any]:
     return arrays | {name: value for name, value in values.items() if isinstance(value, bool | int | float)}
 
 
-def packed_array(array: np.ndarray) -> dict[str, Any]:
+def packed_array(array: NDArray[Any]) -> dict[str, Any]:
     """Return an array as a list with its shape."""
     values = array
     if array.dtype.kind in "iub":
@@ -47,7 +48,7 @@ def unpacked(group: Any, record: type) -> dict[str, Any]:
     return scalars | arrays
 
 
-def unpacked_array(group: Any, dtype: str) -> np.ndarray:
+def unpacked_array(group: Any, dtype: str) -> NDArray[Any]:
     """Return the array; raises one of ``UNREADABLE`` if there is none of this type."""
     values, shape = group.get("values"), group["shape"]
     if group["dtype"] != dtype or getattr(shape, "typecode", None) != "i":

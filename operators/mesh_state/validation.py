@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 
@@ -33,6 +36,8 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
         and 0 <= tree.n_roots <= 2 * n_arcs
         and bool(is_later.all())
         and lie_within(tree.parent, -1, n_arcs)
+        and lie_within(tree.saddle, compute.NO_SADDLE, np.inf)
+        and lie_within(tree.closing, compute.ALWAYS, compute.NEVER + 1)
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
         and _are_sound_shells(tree)
     )
@@ -40,17 +45,20 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
 
 def _are_sound_measures(measures: compute.ArcMeasures, n_arcs: int) -> bool:
     columns = (measures.height, measures.closing_length, measures.longest, measures.roundness)
-    return all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns)
+    if not all(column.shape == (n_arcs,) and lie_within(column, 0, np.inf) for column in columns):
+        return False
+    # The closing level set is one of those among which the longest was found.
+    return bool((measures.longest >= measures.closing_length).all())
 
 
 def _are_sound_shells(tree: compute.ArcTree) -> bool:
     """Whether whole shells stand under the root, with numbers of their own that follow those of the roots."""
     is_shell, root = tree.is_shell, len(tree.parent) - 1
-    own = tree.n_roots + 1 + np.arange(-int(is_shell.sum()), 0)
+    numbers = tree.n_roots + 1 + np.arange(-int(is_shell.sum()), 0)
     return (
-        np.array_equal(tree.part[is_shell], own)
+        np.array_equal(tree.part[is_shell], numbers)
         and bool((tree.parent[is_shell] == root).all())
-        and not np.isin(tree.part[~is_shell], own).any()
+        and not np.isin(tree.part[~is_shell], numbers).any()
     )
 
 
@@ -69,6 +77,6 @@ def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
     )
 
 
-def lie_within(indices: np.ndarray, start: int, stop: int) -> bool:
+def lie_within(indices: NDArray[np.integer[Any]] | NDArray[np.floating[Any]], start: float, stop: float) -> bool:
     """Whether all indices are at least ``start`` and below ``stop``."""
     return indices.size == 0 or bool(indices.min() >= start and indices.max() < stop)

@@ -1,4 +1,4 @@
-"""What is told to the user, in the language of the user, with the values that it carries.
+"""Sentences for the user, in the language of the user, with the values that they carry.
 
 Operators and engine write English with the values filled in. A table of another language has the same sentences with {}
 where values stand; here, where they are told, they are found again. What is in no table is told as it is.
@@ -6,15 +6,43 @@ where values stand; here, where they are told, they are found again. What is in 
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Literal
 
 import bpy
 from bpy.app.translations import pgettext_rpt
+
+# Of a report: its colour, and whether a script gets an exception.
+Kind = Literal["INFO", "WARNING", "ERROR"]
 
 PLACE = "{}"
 # A value goes on to the end of its sentence at most.
 _VALUE = r"((?:(?!\. ).)*?)"
 
 _patterns: list[tuple[re.Pattern[str], str]] = []
+
+
+@dataclass(frozen=True)
+class Messages:
+    """Sentences about what was done, in English with the values filled in.
+
+    Attributes
+    ----------
+    infos : tuple of str
+        Told in one line.
+    warnings : tuple of str
+        Each told in a line of its own.
+    """
+
+    infos: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    def report(self, operator: bpy.types.Operator) -> None:
+        """Let an operator tell the sentences in the language of the user, warnings last and each of them once."""
+        if any(self.infos):
+            tell(operator, "INFO", *self.infos)
+        for warning in dict.fromkeys(self.warnings):
+            tell(operator, "WARNING", warning)
 
 
 def use_tables(tables: Iterable[Iterable[str]]) -> None:
@@ -24,7 +52,7 @@ def use_tables(tables: Iterable[Iterable[str]]) -> None:
     _patterns[:] = [(_pattern(sentence), sentence) for sentence in sorted(sentences, key=len, reverse=True)]
 
 
-def tell(operator: bpy.types.Operator, kind: str, *sentences: str) -> None:
+def tell(operator: bpy.types.Operator, kind: Kind, *sentences: str) -> None:
     """Report sentences, of the kind "INFO", "WARNING" or "ERROR", in the language of the user."""
     operator.report({kind}, " ".join(in_language(sentence) for sentence in sentences if sentence))
 

@@ -1,4 +1,4 @@
-"""What nobody foresaw: a sentence for the user, and the traceback kept for the bug report."""
+"""Errors that nobody foresaw: a sentence for the user, and the traceback kept for the bug report."""
 
 import traceback
 from collections.abc import Iterator

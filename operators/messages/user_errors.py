@@ -8,6 +8,7 @@ from importlib.util import find_spec
 import bpy
 
 from ...compute.errors import EngineError
+from ..blender.known_values import mesh_of
 from .sentences import tell
 
 MISSING_SCIPY = (
@@ -67,9 +68,10 @@ def _objection(obj: bpy.types.Object | None) -> str:
     if obj is None or obj.type != "MESH":
         return "Select a mesh object first."
     # Another object with the same mesh may be the one in edit mode.
-    if obj.data.is_editmode:
+    mesh = mesh_of(obj)
+    if mesh.is_editmode:
         return IN_EDIT_MODE
-    return LINKED if is_linked(obj.data) else ""
+    return LINKED if is_linked(mesh) else ""
 
 
 def is_linked(mesh: bpy.types.Mesh) -> bool:

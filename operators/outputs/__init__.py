@@ -1,4 +1,4 @@
-"""What parts are written to: one file an output, and the writer of them all. Imports the rooms of meshes."""
+"""The outputs that parts are written to: one file each, and the writer of them all. Imports the rooms of meshes."""
 
 import bpy
 

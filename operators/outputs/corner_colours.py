@@ -5,10 +5,10 @@ import numpy as np
 
 from ..mesh_data.mesh_arrays import OwnAttribute, n_corners_of_polygon, remove_own_attributes, write_attribute
 from .division import Division
+from .output import Output
 
 # Decimal colours are copied as they are; byte colours are converted one by one, which is thirty times slower.
 PART_COLOR = OwnAttribute("part_color", "FLOAT_COLOR", "CORNER", "color")
-ATTRIBUTES = (PART_COLOR,)
 
 # The active colour attribute that the user had before ours.
 PREVIOUS_COLOR = "eigenparts_previous_color"
@@ -35,3 +35,15 @@ def remove(mesh: bpy.types.Mesh) -> None:
     elif mesh.color_attributes.active_color_name == PART_COLOR.name:
         # Blender 5.2 keeps the name of an attribute that is gone.
         mesh.color_attributes.active_color_name = ""
+
+
+OUTPUT = Output(
+    "CORNER_COLORS",
+    "Colors",
+    'Color attribute "part_color", crisp at the borders',
+    (PART_COLOR,),
+    write,
+    remove,
+    is_default=True,
+    shows_colours=True,
+)

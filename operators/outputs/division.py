@@ -1,10 +1,12 @@
-"""What a mesh is divided into, as outputs need it."""
+"""The division of a mesh into parts, as outputs need it."""
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..mesh_data.mesh_arrays import OwnAttribute
+from ..mesh_state.part_table import PartTable
 
 # The face map.
 PART = OwnAttribute("part", "INT", "FACE")
@@ -26,7 +28,14 @@ class Division:
         Width in the mesh's unit over which vertex groups pass from one part to the next; 0 for hard borders.
     """
 
-    labels: np.ndarray
+    labels: NDArray[np.int32]
     names: dict[int, str]
-    colours: np.ndarray
+    colours: NDArray[np.float32]
     softness: float = 0.0
+
+
+def division_of(labels: NDArray[np.int32], parts: PartTable, softness: float) -> Division:
+    """Return the division for the parts (F,) of the faces, with what they are called and their colours."""
+    present = np.flatnonzero(np.bincount(labels))
+    names = {part: parts.name_of(part) for part in present.tolist()}
+    return Division(labels, names, parts.colours_of(int(labels.max(initial=0)) + 1), softness)

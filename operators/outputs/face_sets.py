@@ -4,9 +4,9 @@ import bpy
 
 from ..mesh_data.mesh_arrays import OwnAttribute, remove_own_attributes, write_attribute
 from .division import Division
+from .output import Output
 
 FACE_SET = OwnAttribute(".sculpt_face_set", "INT", "FACE")
-ATTRIBUTES = (FACE_SET,)
 
 
 def write(mesh: bpy.types.Mesh, division: Division) -> None:
@@ -17,3 +17,13 @@ def write(mesh: bpy.types.Mesh, division: Division) -> None:
 def remove(mesh: bpy.types.Mesh) -> None:
     """Take the face sets back."""
     remove_own_attributes(mesh, [FACE_SET.name])
+
+
+OUTPUT = Output(
+    "FACE_SETS",
+    "Face Sets",
+    "Show, hide and mask parts in sculpt mode",
+    (FACE_SET,),
+    write,
+    remove,
+)

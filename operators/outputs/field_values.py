@@ -3,11 +3,11 @@
 import bpy
 
 from ..mesh_data.mesh_arrays import OwnAttribute, remove_own_attributes, write_attribute
-from ..mesh_state.state import vertex_heights
+from ..mesh_state.stored_analysis import vertex_heights
 from .division import Division
+from .output import Output
 
 FIELD = OwnAttribute("eigenparts_field", "FLOAT", "POINT")
-ATTRIBUTES = (FIELD,)
 
 
 def write(mesh: bpy.types.Mesh, division: Division) -> None:
@@ -18,3 +18,13 @@ def write(mesh: bpy.types.Mesh, division: Division) -> None:
 def remove(mesh: bpy.types.Mesh) -> None:
     """Take the output back."""
     remove_own_attributes(mesh, [FIELD.name])
+
+
+OUTPUT = Output(
+    "FIELD",
+    "Field",
+    'Attribute "eigenparts_field": the numbers whose hills are the parts',
+    (FIELD,),
+    write,
+    remove,
+)

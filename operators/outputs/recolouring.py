@@ -5,7 +5,7 @@ from contextlib import suppress
 import bpy
 from bpy.app.handlers import persistent
 
-from ..mesh_state import state
+from ..mesh_state.state import is_analyzed
 from ..messages.user_errors import Refusal, is_linked
 from . import part_writer
 
@@ -22,12 +22,13 @@ def show_changed_colours() -> None:
 def recolour_meshes() -> None:
     """Give the parts of all meshes the colours they have by now; what cannot be written to keeps its own."""
     for mesh in bpy.data.meshes:
-        if state.is_analyzed(mesh) and not mesh.is_editmode and not is_linked(mesh):
+        if is_analyzed(mesh) and not mesh.is_editmode and not is_linked(mesh):
             with suppress(Refusal):
                 part_writer.recolour(mesh)
 
 
-@persistent
+# The stubs give it no types.
+@persistent  # type: ignore[untyped-decorator]
 def _follow_undo(*_: object) -> None:
     if _is_changed:
         recolour_meshes()

@@ -8,13 +8,17 @@ from typing import Any
 import bmesh
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
-from ..mesh_data.attribute_values import STORAGES, read_attribute, store_values
+from ..blender.known_values import present
+from ..blender.registered_settings import mesh_settings
+from ..mesh_data.attribute_values import STORAGES, AttributeType, Domain, Values, kind_of, read_attribute, store_values
 from ..mesh_data.mesh_arrays import own_names, remove_own_attributes
-from ..mesh_state.state import MOST_LABELS, STATE
+from ..mesh_state.schema import MOST_LABELS
+from ..mesh_state.state import is_analyzed, read
 from ..mesh_state.validation import lie_within
 from . import material_slots, output_registry, vertex_groups
-from .division import PART
+from .division import PART, division_of
 
 # Custom properties that are ours begin so.
 OWN_PROPERTIES = "eigenparts_"
@@ -42,7 +46,7 @@ def all_or_nothing(*meshes: bpy.types.Mesh) -> Iterator[None]:
 @contextmanager
 def faces_or_nothing(mesh: bpy.types.Mesh) -> Iterator[None]:
     """Change the faces of a mesh, or leave them with all that they carry if the block raises anything."""
-    copy = mesh.copy()
+    copy = present(mesh.copy())
     try:
         yield
     except BaseException:
@@ -62,15 +66,15 @@ def faces_or_nothing(mesh: bpy.types.Mesh) -> Iterator[None]:
 def nothing_left_behind(context: bpy.types.Context) -> Iterator[None]:
     """Remove the data-blocks that the block has made if it raises anything, and select what was selected."""
     before = {block.session_uid for block in _blocks()}
-    active, selected = context.view_layer.objects.active, list(context.selected_objects)
+    active, selected = present(context.view_layer).objects.active, list(context.selected_objects)
     try:
         yield
     except BaseException:
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
         bpy.data.batch_remove([block for block in _blocks() if block.session_uid not in before])
-        context.view_layer.objects.active = active
-        for obj in list(context.view_layer.objects):
+        present(context.view_layer).objects.active = active
+        for obj in list(present(context.view_layer).objects):
             obj.select_set(obj in selected)
         raise
 
@@ -96,7 +100,7 @@ def _blocks() -> Iterator[bpy.types.ID]:
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    """What a mesh has of ours, and where what is ours stands among what is the user's.
+    """All that a mesh has of ours, and the places it has among what is the user's.
 
     Attributes
     ----------
@@ -113,7 +117,7 @@ class _Kept:
         All vertex groups.
     """
 
-    attributes: dict[str, tuple[str, str, np.ndarray]]
+    attributes: dict[str, tuple[AttributeType, Domain, Values]]
     properties: dict[str, Any]
     rows: dict[str, list[tuple[Any, ...]]]
     active_colour: str
@@ -123,16 +127,16 @@ class _Kept:
     @classmethod
     def of(cls, mesh: bpy.types.Mesh) -> "_Kept":
         names = {*own_names(mesh), material_slots.MATERIAL_INDEX}
-        present = [attribute for attribute in mesh.attributes if attribute.name in names]
+        existing = [attribute for attribute in mesh.attributes if attribute.name in names]
         return cls(
             {
-                attribute.name: (attribute.data_type, attribute.domain, read_attribute(attribute))
-                for attribute in present
+                attribute.name: (*kind_of(attribute), read_attribute(attribute))
+                for attribute in existing
                 if attribute.data_type in STORAGES
             },
             {name: _plain(mesh[name]) for name in _own_properties(mesh)},
             {name: _rows(mesh, name, fields) for name, fields in LISTS.items()},
-            mesh.color_attributes.active_color_name,
+            mesh.color_attributes.active_color_name or "",
             material_slots.slots_of(mesh),
             vertex_groups.all_names(mesh),
         )
@@ -152,11 +156,17 @@ class _Kept:
         mesh.color_attributes.active_color_name = self.active_colour
         for name, fields in LISTS.items():
             _restore_rows(mesh, name, fields, self.rows[name])
-        if PART.name in self.attributes and STATE in self.properties:
-            labels = self.attributes[PART.name][2].ravel()
-            if lie_within(labels, 0, MOST_LABELS):
-                output_registry.write(mesh, labels, output_registry.COMPOUND)
+        if PART.name in self.attributes and is_analyzed(mesh):
+            _write_compound(mesh, self.attributes[PART.name][2].ravel())
         mesh.update()
+
+
+def _write_compound(mesh: bpy.types.Mesh, labels: NDArray[np.int32]) -> None:
+    """Write those outputs of parts (F,) that are more than attributes."""
+    if lie_within(labels, 0, MOST_LABELS):
+        state = read(mesh)
+        division = division_of(labels, state.parts, state.softness)
+        output_registry.write_compound(mesh, division, state.outputs)
 
 
 def _own_properties(mesh: bpy.types.Mesh) -> list[str]:
@@ -169,21 +179,23 @@ def _plain(value: Any) -> Any:
 
 def _rows(mesh: bpy.types.Mesh, name: str, fields: tuple[str, ...]) -> list[tuple[Any, ...]]:
     # The command line does without the extension's properties.
-    rows = getattr(mesh.eigenparts, name) if hasattr(mesh, "eigenparts") else ()
+    rows = getattr(mesh_settings(mesh), name) if hasattr(mesh, "eigenparts") else ()
     return [tuple(getattr(row, field) for field in fields) for row in rows]
 
 
-def _restore_attribute(mesh: bpy.types.Mesh, name: str, data_type: str, domain: str, values: np.ndarray) -> None:
-    present = mesh.attributes.get(name)
-    if present is not None and (present.data_type, present.domain) != (data_type, domain):
-        mesh.attributes.remove(present)
+def _restore_attribute(
+    mesh: bpy.types.Mesh, name: str, data_type: AttributeType, domain: Domain, values: Values
+) -> None:
+    existing = mesh.attributes.get(name)
+    if existing is not None and (existing.data_type, existing.domain) != (data_type, domain):
+        mesh.attributes.remove(existing)
     if name not in mesh.attributes:
         mesh.attributes.new(name, type=data_type, domain=domain)
     store_values(mesh.attributes[name], values)
 
 
 def _restore_property(mesh: bpy.types.Mesh, name: str, kept: dict[str, Any]) -> None:
-    if name in mesh:
+    if mesh.get(name) is not None:
         del mesh[name]
     if name in kept:
         mesh[name] = kept[name]
@@ -193,7 +205,7 @@ def _restore_rows(mesh: bpy.types.Mesh, name: str, fields: tuple[str, ...], kept
     # Whoever sets a property of a row still holds it, so rows are not made anew without need.
     if _rows(mesh, name, fields) == kept:
         return
-    rows = getattr(mesh.eigenparts, name)
+    rows = getattr(mesh_settings(mesh), name)
     rows.clear()
     for values in kept:
         row = rows.add()

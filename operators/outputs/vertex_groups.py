@@ -1,14 +1,17 @@
 """Output: a vertex group for each part, with hard borders or softened over a width on the surface."""
 
+from collections.abc import Iterable
+
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import read_mesh
 from .division import Division
+from .output import Output
 from .vertex_map import labels_of_vertices
 
-ATTRIBUTES = ()
 # On the mesh: the name of the group of each part.
 OWN_GROUPS = "eigenparts_groups"
 
@@ -32,7 +35,7 @@ def remove(mesh: bpy.types.Mesh) -> None:
     obj = _object_of(mesh)
     if obj is not None:
         _drop(obj, _own_groups(mesh).values())
-    if OWN_GROUPS in mesh:
+    if mesh.get(OWN_GROUPS) is not None:
         del mesh[OWN_GROUPS]
 
 
@@ -63,8 +66,7 @@ def _own_groups(mesh: bpy.types.Mesh) -> dict[int, str]:
 
 def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) -> dict[int, bpy.types.VertexGroup]:
     """Return an empty group for each part; those of parts that are gone are removed."""
-    own = _own_groups(mesh)
-    _drop(obj, own.values())
+    _drop(obj, _own_groups(mesh).values())
     # Where the user has a group of that name, Blender gives ours a number.
     groups = {part: obj.vertex_groups.new(name=name) for part, name in names.items()}
     mesh[OWN_GROUPS] = {str(part): group.name for part, group in groups.items()}
@@ -72,7 +74,7 @@ def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) 
     return {part: obj.vertex_groups[name] for part, name in _own_groups(mesh).items()}
 
 
-def _drop(obj: bpy.types.Object, names: list[str]) -> None:
+def _drop(obj: bpy.types.Object, names: Iterable[str]) -> None:
     active = obj.vertex_groups.active
     active_name = active.name if active else ""
     for name in names:
@@ -82,12 +84,14 @@ def _drop(obj: bpy.types.Object, names: list[str]) -> None:
         obj.vertex_groups.active = obj.vertex_groups[active_name]
 
 
-def _fill_hard(groups: dict[int, bpy.types.VertexGroup], labels: np.ndarray) -> None:
+def _fill_hard(groups: dict[int, bpy.types.VertexGroup], labels: NDArray[np.int32]) -> None:
     for part, group in groups.items():
         group.add(np.flatnonzero(labels == part).tolist(), 1.0, "REPLACE")
 
 
-def _fill_softly(groups: dict[int, bpy.types.VertexGroup], parts: np.ndarray, weights: np.ndarray) -> None:
+def _fill_softly(
+    groups: dict[int, bpy.types.VertexGroup], parts: NDArray[np.int64], weights: NDArray[np.float64]
+) -> None:
     for part, column in zip(parts.tolist(), weights.T, strict=True):
         if part not in groups:
             continue
@@ -97,7 +101,9 @@ def _fill_softly(groups: dict[int, bpy.types.VertexGroup], parts: np.ndarray, we
             groups[part].add([vertex], column[vertex], "REPLACE")
 
 
-def _softened(mesh: bpy.types.Mesh, labels: np.ndarray, width: float) -> tuple[np.ndarray, np.ndarray]:
+def _softened(
+    mesh: bpy.types.Mesh, labels: NDArray[np.int32], width: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the parts (P,) and the (V, P) weights; vertices at one place get the same."""
     arrays = read_mesh(mesh)
     _, first, place = np.unique(arrays.vertices, axis=0, return_index=True, return_inverse=True)
@@ -105,3 +111,15 @@ def _softened(mesh: bpy.types.Mesh, labels: np.ndarray, width: float) -> tuple[n
     welded = compute.TriangleMesh(arrays.vertices[first], place[arrays.triangles])
     parts, weights = compute.softened_labels(welded, labels[first], width)
     return parts, weights[place]
+
+
+OUTPUT = Output(
+    "VERTEX_GROUPS",
+    "Vertex Groups",
+    "A vertex group for each part, of its name",
+    (),
+    write,
+    remove,
+    is_compound=True,
+    options=("softness",),
+)

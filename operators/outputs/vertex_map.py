@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ..mesh_data.mesh_arrays import (
     OwnAttribute,
@@ -11,9 +12,9 @@ from ..mesh_data.mesh_arrays import (
     write_attribute,
 )
 from .division import Division
+from .output import Output
 
 PART_VERTEX = OwnAttribute("part_vertex", "INT", "POINT")
-ATTRIBUTES = (PART_VERTEX,)
 
 
 def write(mesh: bpy.types.Mesh, division: Division) -> None:
@@ -26,13 +27,15 @@ def remove(mesh: bpy.types.Mesh) -> None:
     remove_own_attributes(mesh, [PART_VERTEX.name])
 
 
-def labels_of_vertices(mesh: bpy.types.Mesh, labels: np.ndarray) -> np.ndarray:
+def labels_of_vertices(mesh: bpy.types.Mesh, labels: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the (V,) int32 labels of the vertices for those of the faces."""
     label_of_corner = np.repeat(labels, n_corners_of_polygon(mesh))
     return majority_label(label_of_corner, vertex_of_corner(mesh), len(mesh.vertices))
 
 
-def majority_label(label_of_corner: np.ndarray, vertex_of_corner: np.ndarray, n_vertices: int) -> np.ndarray:
+def majority_label(
+    label_of_corner: NDArray[np.int32], vertex_of_corner: NDArray[np.int32], n_vertices: int
+) -> NDArray[np.int32]:
     """Return the (V,) int32 label that most corners at a vertex have, the smallest among equals; 0 without faces."""
     label = np.zeros(n_vertices, dtype=np.int32)
     label[vertex_of_corner] = label_of_corner
@@ -46,3 +49,14 @@ def majority_label(label_of_corner: np.ndarray, vertex_of_corner: np.ndarray, n_
     if len(vertices):
         label[vertices] = kinds[votes.reshape(len(vertices), len(kinds)).argmax(axis=1)]
     return label
+
+
+OUTPUT = Output(
+    "VERTEX_ATTRIBUTE",
+    "Vertex Attribute",
+    'Attribute "part_vertex": the part of most faces around',
+    (PART_VERTEX,),
+    write,
+    remove,
+    is_default=True,
+)

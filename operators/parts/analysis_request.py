@@ -1,14 +1,14 @@
-"""What operators that analyze the active mesh have in common: when they can, what is read, and with which settings."""
-
-from typing import Any
+"""Base class of the operators that analyze the active mesh."""
 
 import bpy
 
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import analysis_settings
 from ..jobs import background
 from ..jobs.background import BackgroundOperator
-from ..mesh_data import mesh_arrays
 from ..messages.user_errors import can_use_active_mesh
 from .analysis_options import AnalysisOptions
+from .analysis_settings import SETTINGS, AnalysisSettings
 
 
 class AnalysisRequest(AnalysisOptions, BackgroundOperator):
@@ -18,36 +18,13 @@ class AnalysisRequest(AnalysisOptions, BackgroundOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         """From the window: what the call leaves open is taken from the panel."""
         for name in AnalysisOptions.__annotations__:
             if not self.properties.is_property_set(name):
-                setattr(self, name, getattr(context.scene.eigenparts, name))
+                setattr(self, name, getattr(analysis_settings(context), name))
         return super().invoke(context, event)
 
-    def read(self, context: bpy.types.Context) -> tuple[mesh_arrays.MeshArrays, dict[str, Any]]:
-        """Return the active mesh, posed if that is wanted, and the keyword arguments of the engine."""
-        arrays = mesh_arrays.read_object(context, context.object, self.use_modifiers)
-        options = analysis_options(
-            context.object.data,
-            self.field,
-            self.eigenfunction,
-            self.attribute,
-            order=self.order,
-            boundary=self.boundary,
-            shells=self.shells,
-        )
-        return arrays, options
-
-
-def analysis_options(
-    mesh: bpy.types.Mesh, field: str, eigenfunction: int, attribute: str, *, order: str, boundary: str, shells: str
-) -> dict[str, Any]:
-    """Return the keyword arguments of the engine for the settings of the user."""
-    choice = {"DIFFUSION": "diffusion", "EIGENFUNCTION": eigenfunction}
-    return {
-        "field": mesh_arrays.read_vertex_floats(mesh, attribute) if field == "ATTRIBUTE" else choice[field],
-        "order": "auto" if order == "AUTO" else int(order),
-        "boundary": boundary.lower(),
-        "shells": shells.lower(),
-    }
+    def analysis_settings(self) -> AnalysisSettings:
+        """Return the properties of the operator as values."""
+        return AnalysisSettings(**{name: getattr(self, name) for name in SETTINGS})

@@ -1,26 +1,42 @@
-"""What operators have in common that show the field itself: parts are stored on the mesh, the field is not."""
+"""Base class of the operators that show the field itself: parts are stored on the mesh, the field is not."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import bpy
 
+from ... import compute
+from ..blender.known_values import present
+from ..blender.outcome import Outcome
 from ..jobs import recent_analyses
-from ..mesh_data import mesh_arrays
+from ..jobs.mesh_handle import MeshHandle
+from ..messages.sentences import Messages
 from .analysis_request import AnalysisRequest
+from .analysis_settings import AnalysisInput, read_input
 
 
 class FreshAnalysis(AnalysisRequest):
-    """Hands an analysis of the active mesh to ``finish`` with the name of the object."""
+    """Analyzes the active mesh, and hands the analysis to ``show``."""
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Any], str]:
-        return partial(self.examine, *self.read(context)), context.object.name
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., compute.Analysis], MeshHandle]:
+        given = read_input(context, present(context.object), self.analysis_settings())
+        return partial(analyze_topology, given), MeshHandle.of(present(context.object))
 
-    @staticmethod
-    def examine(arrays: mesh_arrays.MeshArrays, options: dict[str, Any], progress: Callable[[float, str], None]) -> Any:
-        """Return what ``finish`` needs; knows nothing of Blender, so any thread may do it."""
-        analysis = recent_analyses.recall(arrays, options, progress)
-        # The longer part of the topology is made here, in the thread.
-        _ = analysis.diagram
-        return analysis
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, analysis: compute.Analysis) -> Outcome:
+        shown = self.show(context, handle.find_object(), analysis)
+        Messages((shown,), analysis.warnings).report(self)
+        return {"FINISHED"}
+
+    def show(self, context: bpy.types.Context, obj: bpy.types.Object, analysis: compute.Analysis) -> str:
+        """Show something of the analysis of an object, and return a sentence about it."""
+        raise NotImplementedError
+
+
+def analyze_topology(given: AnalysisInput, progress: compute.Progress) -> compute.Analysis:
+    """Return an analysis with its persistence diagram; knows nothing of Blender, so any thread may do it."""
+    analysis = recent_analyses.recall(given.arrays, given.options, progress)
+    # The longer part of the topology is made here, in the thread.
+    _ = analysis.diagram
+    return analysis

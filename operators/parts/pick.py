@@ -1,15 +1,17 @@
 """Operator: make a part active by clicking it in the view."""
 
 import bpy
-from bpy.props import FloatVectorProperty
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
-from ..mesh_state import part_table
-from ..mesh_state.state import is_analyzed
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import job_status, mesh_settings
+from ..blender.typed_properties import FloatVectorProperty, TypedProperties
+from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import in_language
 from ..messages.user_errors import Refusal, refusals_told
-from ..outputs.part_writer import PART
+from ..outputs.division import PART
 
 HOW = "Click a part; ESC or right click when done."
 NOTHING = "There is no surface here."
@@ -18,17 +20,17 @@ NO_PARTS = "This object has no parts; analyze it first."
 BEHIND, MOST_PASSED = 1e-5, 1000
 
 
-class EIGENPARTS_OT_pick_part(bpy.types.Operator):
+class EIGENPARTS_OT_pick_part(TypedProperties, bpy.types.Operator):
     """Click parts in the view to make them active in the list, until ESC or right click"""
 
     bl_idname = "eigenparts.pick_part"
     bl_label = "Pick Part"
     bl_options = {"UNDO"}
 
-    location: FloatVectorProperty(
+    location: tuple[float, float, float] = FloatVectorProperty(
         name="Location", description="Where the ray to the surface begins, in the world", subtype="XYZ"
     )
-    direction: FloatVectorProperty(
+    direction: tuple[float, float, float] = FloatVectorProperty(
         name="Direction", description="Where the ray goes, in the world", subtype="XYZ", default=(0, 0, -1)
     )
 
@@ -38,30 +40,30 @@ class EIGENPARTS_OT_pick_part(bpy.types.Operator):
             cls.poll_message_set("Parts are picked in object mode.")
         return context.mode == "OBJECT"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def execute(self, context: bpy.types.Context) -> Outcome:
         with refusals_told(self):
             pick(context, Vector(self.location), Vector(self.direction))
             return {"FINISHED"}
         return {"CANCELLED"}
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        status = context.window_manager.eigenparts
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
+        status = job_status(context)
         # The button is pressed again while it is on: the one that is on leaves at its next event.
         status.is_picking = not status.is_picking
         if not status.is_picking:
             return {"CANCELLED"}
         self._has_picked = False
         _show_in_headers(HOW)
-        context.window.cursor_modal_set("EYEDROPPER")
-        context.window_manager.modal_handler_add(self)
+        present(context.window).cursor_modal_set("EYEDROPPER")
+        present(context.window_manager).modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> Outcome:
         is_over = event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS"
-        if is_over or context.mode != "OBJECT" or not context.window_manager.eigenparts.is_picking:
+        if is_over or context.mode != "OBJECT" or not job_status(context).is_picking:
             self.cancel(context)
             return {"FINISHED"} if self._has_picked else {"CANCELLED"}
-        view = view_under(context.screen, event.mouse_x, event.mouse_y)
+        view = view_under(present(context.screen), event.mouse_x, event.mouse_y)
         if view is None or event.type != "LEFTMOUSE":
             return {"PASS_THROUGH"}
         if event.value == "PRESS":
@@ -70,17 +72,21 @@ class EIGENPARTS_OT_pick_part(bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the view back; Blender too ends the operator, such as when a file is loaded."""
-        context.window_manager.eigenparts.is_picking = False
+        job_status(context).is_picking = False
         _show_in_headers(None)
-        context.window.cursor_modal_restore()
+        present(context.window).cursor_modal_restore()
 
     def _pick_under(
         self, context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region, event: bpy.types.Event
     ) -> None:
-        place = event.mouse_x - region.x, event.mouse_y - region.y
-        ray = (action(region, region.data, place) for action in (region_2d_to_origin_3d, region_2d_to_vector_3d))
+        place, view = (event.mouse_x - region.x, event.mouse_y - region.y), area.spaces.active
+        assert isinstance(region.data, bpy.types.RegionView3D)
+        assert isinstance(view, bpy.types.SpaceView3D)
+        origin, direction = (
+            action(region, region.data, place) for action in (region_2d_to_origin_3d, region_2d_to_vector_3d)
+        )
         try:
-            name = pick(context, *ray, area.spaces.active)
+            name = pick(context, origin, direction, view)
         except Refusal as refusal:
             _show_in_headers(f"{refusal} {HOW}")
         else:
@@ -107,14 +113,14 @@ def pick(
     """
     obj, face = _first_hit(context, origin, direction, view)
     part = _part_of_face(context, obj, face)
-    settings = obj.data.eigenparts
+    settings = mesh_settings(mesh_of(obj))
     parts = [row.part for row in settings.rows]
     if part not in parts:
         raise Refusal(NO_PARTS)
-    context.view_layer.objects.active = obj
+    present(context.view_layer).objects.active = obj
     obj.select_set(True)
     settings.active_row = parts.index(part)
-    return part_table.name_of(obj.data, part)
+    return read(mesh_of(obj)).parts.name_of(part)
 
 
 def view_under(screen: bpy.types.Screen, x: int, y: int) -> tuple[bpy.types.Area, bpy.types.Region] | None:
@@ -144,8 +150,8 @@ def _first_hit(
     """Return the first object that a ray meets, and the face of it as its modifiers leave it."""
     depsgraph = context.evaluated_depsgraph_get()
     for _ in range(MOST_PASSED):
-        found, place, _, face, obj, _ = context.scene.ray_cast(depsgraph, origin, direction)
-        if not found:
+        found, place, _, face, obj, _ = present(context.scene).ray_cast(depsgraph, origin, direction)
+        if not found or obj is None:
             break
         if view is None or obj.visible_in_viewport_get(view):
             return obj, face
@@ -155,12 +161,12 @@ def _first_hit(
 
 def _part_of_face(context: bpy.types.Context, obj: bpy.types.Object, face: int) -> int:
     """Return the part of a face of an object as its modifiers leave it: they carry the map of the parts along."""
-    if obj.type != "MESH" or not is_analyzed(obj.data):
+    if obj.type != "MESH" or not is_analyzed(mesh_of(obj)):
         raise Refusal(NO_PARTS)
     evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
     try:
-        labels = evaluated.to_mesh().attributes.get(PART.name)
-        if labels is None or not PART.is_kind_of(labels) or face >= len(labels.data):
+        labels = present(evaluated.to_mesh()).attributes.get(PART.name)
+        if not isinstance(labels, bpy.types.IntAttribute) or not PART.is_kind_of(labels) or face >= len(labels.data):
             raise Refusal("The modifiers leave no parts on the surface; turn them off in the view to pick one.")
         return labels.data[face].value
     finally:

@@ -1,32 +1,30 @@
 """Operator: divide an analyzed mesh into parts at another level."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import EnumProperty, FloatProperty, IntProperty, TypedProperties
 from ..mesh_data.viewport import show_vertex_colours
-from ..mesh_state import state
+from ..mesh_state.state import is_analyzed_for, read
 from ..messages.sentences import tell
 from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs import part_writer
+from .choice_items import MODE_ITEMS, identifier, word
 
-# In the order of compute.MODES.
-MODE_ITEMS = [
-    ("NESTED", "Nested", "Levels overlaid: also what lies between features, and small features inside large ones"),
-    ("FEATURES", "Features", "Only what protrudes: each feature that is kept is one part, all else is body"),
-]
 # What a division can go by, and the property that says how far.
 MEASURES = {"LEVEL": "level", "N_PARTS": "n_parts", "THRESHOLD": "threshold"}
 
 
-class EIGENPARTS_OT_segment(bpy.types.Operator):
+class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
     """Divide the analyzed mesh into parts: by level, threshold or number, or at the default level"""
 
     bl_idname = "eigenparts.segment"
     bl_label = "Segment"
     bl_options = {"REGISTER", "UNDO"}
 
-    by: EnumProperty(
+    by: str = EnumProperty(
         name="By",
         description="What says how finely the mesh is divided; if not given, what is given of the following",
         items=[
@@ -37,8 +35,8 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
         ],
         options={"SKIP_SAVE"},
     )
-    level: IntProperty(name="Level", description="How many features to keep", soft_min=0, options={"SKIP_SAVE"})
-    threshold: FloatProperty(
+    level: int = IntProperty(name="Level", description="How many features to keep", soft_min=0, options={"SKIP_SAVE"})
+    threshold: float = FloatProperty(
         name="Threshold",
         description="Least height of a feature, as a fraction of the field's range",
         default=0.05,
@@ -46,10 +44,10 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
         soft_max=1,
         options={"SKIP_SAVE"},
     )
-    n_parts: IntProperty(
+    n_parts: int = IntProperty(
         name="Parts", description="How many parts, the body included", soft_min=1, options={"SKIP_SAVE"}
     )
-    mode: EnumProperty(
+    mode: str = EnumProperty(
         name="Mode",
         description="What becomes a part; if not given, as it is on the mesh",
         items=MODE_ITEMS,
@@ -58,24 +56,25 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return can_use_active_mesh(cls, context) and state.is_analyzed_for(cls, context)
+        return can_use_active_mesh(cls, context) and is_analyzed_for(cls, context)
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.layout.use_property_split = True
-        self.layout.prop(self, "mode")
-        self.layout.prop(self, "by")
+        layout = present(self.layout)
+        layout.use_property_split = True
+        layout.prop(self, "mode")
+        layout.prop(self, "by")
         if self.by in MEASURES:
-            self.layout.prop(self, MEASURES[self.by])
+            layout.prop(self, MEASURES[self.by])
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        mesh, given = context.object.data, self._given()
+    def execute(self, context: bpy.types.Context) -> Outcome:
+        state, given = read(mesh_of(context.object)), self._given()
         with refusals_told(self):
-            mode = self.mode.lower() if self.properties.is_property_set("mode") else None
-            labels = part_writer.segment_mesh(mesh, mode=mode, **{name: getattr(self, name) for name in given})
+            mode = word(compute.MODES, self.mode) if self.properties.is_property_set("mode") else state.mode
+            labels = part_writer.segment(state, mode=mode, **{name: getattr(self, name) for name in given})
             show_vertex_colours(context)
             for warning in labels.warnings:
                 tell(self, "WARNING", warning)
-            self._fill_in(mesh, labels, given)
+            self._fill_in(labels, mode, given)
             return {"FINISHED"}
         return {"CANCELLED"}
 
@@ -85,10 +84,10 @@ class EIGENPARTS_OT_segment(bpy.types.Operator):
             return [MEASURES[self.by]] if self.by in MEASURES else []
         return [name for name in MEASURES.values() if self.properties.is_property_set(name)]
 
-    def _fill_in(self, mesh: bpy.types.Mesh, labels: "compute.BranchLabels", given: list[str]) -> None:
+    def _fill_in(self, labels: "compute.BranchLabels", mode: str, given: list[str]) -> None:
         """Let the panel of the last operation begin with what the mesh shows."""
         self.by = next((by for by, name in MEASURES.items() if name in given), "DEFAULT")
-        self.mode = state.mode_of(mesh).upper()
+        self.mode = identifier(mode)
         for name, value in (("level", labels.level), ("n_parts", len(labels.parts))):
             if name not in given:
                 setattr(self, name, value)

@@ -1,15 +1,16 @@
 """Operator: register an object again with the other sign of one matched function."""
 
 import bpy
-from bpy.props import IntProperty
 
+from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_state.registration_record import Match
 from ..messages.user_errors import Refusal
-from .register_meshes import SHOWN_FUNCTIONS, Wish
-from .registering_again import RegistersAgain, given_flips
+from .match_options import MatchOptions, remembered_options
+from .mesh_registration import SHOWN_FUNCTIONS
+from .repeated_registration import RepeatedRegistration
 
 
-class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
+class EIGENPARTS_OT_flip_function(RepeatedRegistration, TypedProperties, bpy.types.Operator):
     """Registers the object again with the other sign of one of the attributes that Write Eigenfunctions makes."""
 
     bl_idname = "eigenparts.flip_function"
@@ -20,7 +21,7 @@ class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    number: IntProperty(
+    number: int = IntProperty(
         name="Function",
         description="Which function of the reference, counted from the smoothest",
         default=1,
@@ -28,11 +29,11 @@ class EIGENPARTS_OT_flip_function(RegistersAgain, bpy.types.Operator):
         max=SHOWN_FUNCTIONS,
     )
 
-    def wish(self, match: Match) -> Wish:
+    def match_options(self, match: Match) -> MatchOptions:
         if self.number > len(match.signs):
             raise Refusal(f"Function {self.number} was not matched; there are {len(match.signs)}.")
-        sign = -match.signs[self.number - 1]
-        return Wish(flips={**given_flips(match), self.number: sign}, mirrored=match.mirrored)
+        flips = {**remembered_options(match).flips, self.number: -match.signs[self.number - 1]}
+        return MatchOptions(flips, mirrored=match.mirrored)
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_flip_function,))

@@ -3,25 +3,28 @@
 from collections.abc import Callable
 
 import bpy
-from bpy.props import BoolProperty
 
+from ..blender.known_values import present
+from ..blender.typed_properties import BoolProperty, TypedProperties
 from ..jobs import background
+from ..mesh_data.selected_meshes import other_meshes
 from ..messages.user_errors import Refusal, can_use_active_mesh
-from ..parts.fresh_analysis import FreshAnalysis
-from .register_meshes import Registration, Wish
-from .registering import SETTINGS, Registers, Tickets
+from ..parts.analysis_request import AnalysisRequest
+from .match_options import MatchOptions
+from .registration_operator import RegistrationHandles, RegistrationOperator
+from .shape_registration import Registration
 
 NOTHING_ELSE = "Select the meshes to register, and last the one that has the parts."
 
 
-class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operator):
+class EIGENPARTS_OT_register_selected(RegistrationOperator, AnalysisRequest, TypedProperties, bpy.types.Operator):
     """Give all selected meshes the parts of the active one: the same numbers, names and colors"""
 
     bl_idname = "eigenparts.register_selected"
     bl_label = "Register Selected"
     bl_options = {"UNDO"}
 
-    mirrored: BoolProperty(
+    mirrored: bool = BoolProperty(
         name="Mirrored",
         description="The meshes are mirror images, such as a left hand and a right one; not needed where only the"
         " scale of an object mirrors it",
@@ -31,12 +34,13 @@ class EIGENPARTS_OT_register_selected(Registers, FreshAnalysis, bpy.types.Operat
     def poll(cls, context: bpy.types.Context) -> bool:
         return can_start_with_others(cls, context, NOTHING_ELSE)
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], Tickets]:
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Registration], RegistrationHandles]:
         targets = other_meshes(context)
         if not targets:
             raise Refusal(NOTHING_ELSE)
-        settings = {name: getattr(self, name) for name in SETTINGS}
-        return self.start(context, context.object, targets, Wish(mirrored=self.mirrored), settings)
+        return self.start(
+            context, present(context.object), targets, MatchOptions(mirrored=self.mirrored), self.analysis_settings()
+        )
 
 
 def can_start_with_others(operator: type[bpy.types.Operator], context: bpy.types.Context, nothing_else: str) -> bool:
@@ -46,12 +50,6 @@ def can_start_with_others(operator: type[bpy.types.Operator], context: bpy.types
     if not other_meshes(context):
         operator.poll_message_set(nothing_else)
     return bool(other_meshes(context))
-
-
-def other_meshes(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Return an object for each selected mesh other than the active one's."""
-    objects = {obj.data: obj for obj in context.selected_objects if obj.type == "MESH"}
-    return [obj for mesh, obj in objects.items() if mesh != context.object.data]
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_register_selected,))

@@ -1,4 +1,4 @@
-"""What the panel shows and the user prefers. Imports every other room."""
+"""Settings of meshes and preferences of the user. Imports every other room."""
 
 import bpy
 

@@ -12,7 +12,8 @@ HOME = str(Path(__file__).parents[2])
 FOLDER = "eigenparts/analysis"
 
 
-class EIGENPARTS_OT_add_analysis_preset(AddPresetBase, bpy.types.Operator):
+# The stubs give the methods of Blender\'s own class no types.
+class EIGENPARTS_OT_add_analysis_preset(AddPresetBase, bpy.types.Operator):  # type: ignore[misc]
     """Keep these options under a name, or remove the preset"""
 
     bl_idname = "eigenparts.add_analysis_preset"

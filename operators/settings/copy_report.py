@@ -9,7 +9,10 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..mesh_state import state
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.registered_settings import analysis_settings, job_status
+from ..mesh_state.state import read
 from ..messages import unexpected_errors
 from ..messages.sentences import tell
 from ..messages.user_errors import Refusal
@@ -24,8 +27,8 @@ class EIGENPARTS_OT_copy_report(bpy.types.Operator):
     bl_label = "Copy Bug Report"
     bl_options = set()
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        context.window_manager.clipboard = report(context)
+    def execute(self, context: bpy.types.Context) -> Outcome:
+        present(context.window_manager).clipboard = report(context)
         tell(self, "INFO", "The bug report is on the clipboard; paste it where you report the problem.")
         return {"FINISHED"}
 
@@ -33,8 +36,8 @@ class EIGENPARTS_OT_copy_report(bpy.types.Operator):
 def report(context: bpy.types.Context) -> str:
     """Return lines that tell a developer what was used on what."""
     lines = [*_versions(), *_facts_of_scene(context), *_facts_of_object(context.object)]
-    if context.window_manager.eigenparts.problem:
-        lines.append(f"Last message: {context.window_manager.eigenparts.problem}")
+    if job_status(context).problem:
+        lines.append(f"Last message: {job_status(context).problem}")
     fault = unexpected_errors.last()
     if fault is not None:
         lines += ["Last error:", fault.report]
@@ -58,7 +61,7 @@ def _version_of_scipy() -> str:
 
 
 def _facts_of_scene(context: bpy.types.Context) -> list[str]:
-    settings = context.scene.eigenparts
+    settings = analysis_settings(context)
     chosen = [f"{name}={getattr(settings, name)}" for name in ("field", "eigenfunction", "order", "boundary", "shells")]
     return [f"Settings: {', '.join(chosen)}, use_modifiers={settings.use_modifiers}"]
 
@@ -66,7 +69,7 @@ def _facts_of_scene(context: bpy.types.Context) -> list[str]:
 def _facts_of_object(obj: bpy.types.Object | None) -> list[str]:
     if obj is None or obj.type != "MESH":
         return ["No mesh is active."]
-    mesh = obj.data
+    mesh = mesh_of(obj)
     n_keys = len(mesh.shape_keys.key_blocks) if mesh.shape_keys else 0
     return [
         f"Mesh: {len(mesh.vertices)} vertices, {len(mesh.edges)} edges, {len(mesh.polygons)} faces, "
@@ -80,7 +83,7 @@ def _facts_of_object(obj: bpy.types.Object | None) -> list[str]:
 
 def _facts_of_analysis(mesh: bpy.types.Mesh) -> str:
     try:
-        summary = state.summarize(mesh)
+        summary = read(mesh).summary
     except Refusal as refusal:
         return f"Analysis: {refusal}"
     return (

@@ -1,8 +1,12 @@
-"""What the user prefers in all files: the colours of parts, and how many cores an analysis may take."""
+"""Preferences of the user in all files: the colours of parts, and how many cores an analysis may take."""
+
+from typing import Any, cast
 
 import bpy
-from bpy.props import FloatVectorProperty, IntProperty
 
+from ..blender.known_values import present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import FloatVectorProperty, IntProperty, TypedProperties
 from ..jobs.threads import PACKAGE, user_preferences
 from ..mesh_state import palette
 from ..outputs import recolouring
@@ -11,7 +15,7 @@ COLOURS = tuple(f"color_{number}" for number in range(1, len(palette.PARTS) + 1)
 COLUMNS = 7
 
 
-def _colour(name: str, description: str, default: tuple[float, ...]) -> object:
+def _colour(name: str, description: str, default: tuple[float, ...]) -> Any:
     return FloatVectorProperty(
         name=name, description=description, subtype="COLOR", size=3, min=0, max=1, default=default, update=_show_colours
     )
@@ -26,20 +30,22 @@ def _show_colours(preferences: "EigenpartsPreferences", context: bpy.types.Conte
     recolouring.show_changed_colours()
 
 
-class EigenpartsPreferences(bpy.types.AddonPreferences):
+class EigenpartsPreferences(TypedProperties, bpy.types.AddonPreferences):
     bl_idname = PACKAGE
 
-    n_threads: IntProperty(
+    n_threads: int = IntProperty(
         name="Threads",
         description="Processor cores that an analysis may use; 0 leaves it to the libraries",
         default=0,
         min=0,
         soft_max=64,
     )
-    body: _colour("Body", "Color of what belongs to no part", palette.standard_colours()[0])
+    body: tuple[float, float, float] = _colour(
+        "Body", "Color of what belongs to no part", palette.standard_colours()[0]
+    )
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
+        layout = present(self.layout)
         layout.use_property_split = True
         layout.prop(self, "n_threads")
         layout.label(text="Colors of parts, for those that have no color of their own")
@@ -57,6 +63,10 @@ EigenpartsPreferences.__annotations__ |= {
 }
 
 
+def _preferences() -> EigenpartsPreferences | None:
+    return cast(EigenpartsPreferences | None, user_preferences())
+
+
 class EIGENPARTS_OT_reset_colors(bpy.types.Operator):
     """Go back to the colors that color-blind people can tell apart too"""
 
@@ -64,8 +74,8 @@ class EIGENPARTS_OT_reset_colors(bpy.types.Operator):
     bl_label = "Reset Colors"
     bl_options = {"INTERNAL"}
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        preferences = user_preferences()
+    def execute(self, context: bpy.types.Context) -> Outcome:
+        preferences = _preferences()
         if preferences is not None:
             for name in ("body", *COLOURS):
                 preferences.property_unset(name)
@@ -81,7 +91,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 def register() -> None:
     """Add the preferences, and take the colours from them."""
     _register_classes()
-    preferences = user_preferences()
+    preferences = _preferences()
     if preferences is not None:
         _take_colours(preferences)
 

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
-from .canvas import Canvas
+from .canvas import Canvas, Floats, Numbers
 
 # A function that turns a text into triangles of letters of height 1.
-Letters = Callable[[str], np.ndarray]
+Letters = Callable[[str], Floats]
 
 WIDTH, HEIGHT = 1600, 920
 # Where the line of the legend stands.
@@ -26,7 +27,7 @@ CROWD = 150
 
 @dataclass(frozen=True, eq=False)
 class Plotted:
-    """What the picture shows.
+    """A diagram to be drawn, and the marks in it.
 
     Attributes
     ----------
@@ -49,17 +50,24 @@ class _Frame:
 
     canvas: Canvas
     letters: Letters
-    low: np.ndarray
-    high: np.ndarray
-    first: np.ndarray
-    last: np.ndarray
+    low: Floats
+    high: Floats
+    first: Floats
+    last: Floats
 
-    def place(self, values: np.ndarray) -> np.ndarray:
+    def place(self, values: Floats) -> Floats:
         """Return the pixels of values."""
         return self.low + (np.asarray(values) - self.first) / (self.last - self.first) * (self.high - self.low)
 
     def write(
-        self, text: str, at: Sequence[float], *, size: float = 19, colour=QUIET, align=(0.5, 0.5), angle: float = 0
+        self,
+        text: str,
+        at: Numbers,
+        *,
+        size: float = 19,
+        colour: Numbers = QUIET,
+        align: Numbers = (0.5, 0.5),
+        angle: float = 0,
     ) -> None:
         """Write a text; ``align`` says which point of its box stands at the place, (0, 0) being the lower left."""
         triangles = self.letters(text) * size
@@ -70,7 +78,7 @@ class _Frame:
         self.canvas.triangles(triangles @ [[cosine, sine], [-sine, cosine]] + np.asarray(at), colour)
 
 
-def draw_diagram(plotted: Plotted, letters: Letters) -> np.ndarray:
+def draw_diagram(plotted: Plotted, letters: Letters) -> NDArray[np.float32]:
     """Return the (height, width, 3) picture in sRGB, the lowest row first."""
     canvas = Canvas(WIDTH, HEIGHT, PAPER)
     _draw_points(canvas, plotted, letters)
@@ -188,7 +196,7 @@ def _draw_box(frame: _Frame) -> None:
     frame.canvas.line(np.array(corners), INK, 1.5)
 
 
-def _draw_dot(canvas: Canvas, centre: np.ndarray, colour: tuple[float, ...], radius: float = 7) -> None:
+def _draw_dot(canvas: Canvas, centre: Floats, colour: tuple[float, ...], radius: float = 7) -> None:
     canvas.disk(centre, 1.2 * radius, PAPER)
     canvas.disk(centre, radius, colour)
 

@@ -2,6 +2,9 @@
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
+
+from ..blender.known_values import present
 
 
 class Lettering:
@@ -9,7 +12,9 @@ class Lettering:
 
     def __enter__(self) -> "Lettering":
         self._known_fonts = set(bpy.data.fonts)
-        self._curve = bpy.data.curves.new("Eigenparts lettering", "FONT")
+        curve = bpy.data.curves.new("Eigenparts lettering", "FONT")
+        assert isinstance(curve, bpy.types.TextCurve)
+        self._curve = curve
         self._curve.resolution_u = 3
         self._object = bpy.data.objects.new("Eigenparts lettering", self._curve)
         return self
@@ -20,13 +25,13 @@ class Lettering:
         # Blender brings its font into the file with the first text; without texts it is not wanted there.
         bpy.data.batch_remove([font for font in bpy.data.fonts if font not in self._known_fonts and not font.users])
 
-    def triangles(self, text: str) -> np.ndarray:
+    def triangles(self, text: str) -> NDArray[np.float64]:
         """Return (n, 3, 2) triangles of a line of text of height 1 that starts at the origin."""
         self._curve.body = text
-        mesh = self._object.to_mesh()
+        mesh = present(self._object.to_mesh())
         places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
         mesh.vertices.foreach_get("co", places)
         corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
         mesh.loop_triangles.foreach_get("vertices", corners)
         self._object.to_mesh_clear()
-        return places.reshape(-1, 3)[corners.reshape(-1, 3), :2].astype(float)
+        return places.reshape(-1, 3)[corners.reshape(-1, 3), :2].astype(np.float64)

@@ -1,12 +1,14 @@
 """Operator: draw the persistence diagram and the persistence curve of the field into an image."""
 
-from typing import Any
+from collections.abc import Sequence
+from typing import cast
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
-from ..messages.sentences import tell
+from ..blender.known_values import values_of
 from ..parts.fresh_analysis import FreshAnalysis
 from .diagram_picture import Plotted, draw_diagram
 from .lettering import Lettering
@@ -22,28 +24,27 @@ class EIGENPARTS_OT_plot_diagram(FreshAnalysis, bpy.types.Operator):
     bl_label = "Plot Diagram"
     bl_options = {"UNDO"}
 
-    def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
-        title = f"Persistence diagram of {name}, {analysis.field.name}"
+    def show(self, context: bpy.types.Context, obj: bpy.types.Object, analysis: "compute.Analysis") -> str:
+        title = f"Persistence diagram of {obj.name}, {analysis.field.name}"
         plotted = Plotted(title, analysis.diagram, compute.NOISE_THRESHOLD, compute.DEFAULT_THRESHOLD)
         with Lettering() as letters:
-            image = write_image(name, draw_diagram(plotted, letters.triangles))
+            image = write_image(obj.name, draw_diagram(plotted, letters.triangles))
         show_image(context, image)
-        tell(self, "INFO", f'The diagram is in the image "{image.name}".')
-        return {"FINISHED"}
+        return f'The diagram is in the image "{image.name}".'
 
 
-def write_image(name: str, pixels: np.ndarray) -> bpy.types.Image:
+def write_image(name: str, pixels: NDArray[np.float32]) -> bpy.types.Image:
     """Put a picture, (height, width, 3) in sRGB, into the image of an object and keep it in the file."""
     height, width = pixels.shape[:2]
     image = next((image for image in bpy.data.images if image.get(OF_OBJECT) == name), None)
     if image is None:
         image = bpy.data.images.new(f"Diagram of {name}", width, height)
         image[OF_OBJECT] = name
-    elif tuple(image.size) != (width, height):
+    elif tuple(values_of(image.size)) != (width, height):
         image.scale(width, height)
     opaque = np.ones((height, width, 4), dtype=np.float32)
     opaque[..., :3] = pixels
-    image.pixels.foreach_set(opaque.ravel())
+    image.pixels.foreach_set(cast(Sequence[float], opaque.ravel()))
     image.update()
     image.pack()
     return image
@@ -52,8 +53,9 @@ def write_image(name: str, pixels: np.ndarray) -> bpy.types.Image:
 def show_image(context: bpy.types.Context, image: bpy.types.Image) -> None:
     """Show an image in every image editor of the window."""
     for area in context.screen.areas if context.screen else ():
-        if area.type == "IMAGE_EDITOR":
-            area.spaces.active.image = image
+        editor = area.spaces.active
+        if isinstance(editor, bpy.types.SpaceImageEditor):
+            editor.image = image
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_plot_diagram,))

@@ -1,16 +1,17 @@
 """Operator: put the Morse-Smale complex of the field on the mesh, as curves and dots."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import FloatProperty, IntProperty
+from numpy.typing import NDArray
 
-from ..mesh_state import state
+from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
 from ..mesh_state.palette import COMPLEX_COLOURS
 from ..mesh_state.palette import COMPLEX_ROLE as ROLE
-from ..messages.sentences import tell
+from ..mesh_state.state import is_analyzed, read
 from ..outputs.rollback import nothing_left_behind
 from ..parts.fresh_analysis import FreshAnalysis
 
@@ -32,53 +33,51 @@ class TracedComplex:
     dots : dict of (n, 3)
     """
 
-    lines: dict[str, list[np.ndarray]]
-    dots: dict[str, np.ndarray]
+    lines: dict[str, list[NDArray[np.float64]]]
+    dots: dict[str, NDArray[np.float64]]
 
 
-class EIGENPARTS_OT_trace_complex(FreshAnalysis, bpy.types.Operator):
+class EIGENPARTS_OT_trace_complex(FreshAnalysis, TypedProperties, bpy.types.Operator):
     """Put the critical points of the field on the active mesh, with the lines of steepest ascent between them"""
 
     bl_idname = "eigenparts.trace_complex"
     bl_label = "Trace Complex"
     bl_options = {"UNDO"}
 
-    level: IntProperty(
+    level: int = IntProperty(
         name="Level", description="How many features to keep; -1 for the level that the mesh shows", default=-1, min=-1
     )
-    thickness: FloatProperty(
+    thickness: float = FloatProperty(
         name="Thickness", description="How thick lines and dots are, as a multiple of the usual", default=1.0, min=0.01
     )
 
-    def finish(self, context: bpy.types.Context, name: str, analysis: Any) -> set[str]:
-        owner = context.scene.objects[name]
-        found = traced_complex(analysis, self.level if self.level >= 0 else shown_level(owner.data, analysis))
+    def show(self, context: bpy.types.Context, owner: bpy.types.Object, analysis: "compute.Analysis") -> str:
+        traced = traced_complex(analysis, self.level if self.level >= 0 else shown_level(mesh_of(owner), analysis))
         size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
         with nothing_left_behind(context):
-            lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in found.lines.items()}
-            dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in found.dots.items()}
+            lines = {role: curve_of(role, lines, LINE_RADIUS * size) for role, lines in traced.lines.items()}
+            dots = {role: dots_of(role, places, DOT_RADIUS * size) for role, places in traced.dots.items()}
             # What is there from before goes only when there is something to take its place.
-            collection = empty_collection(context, name)
+            collection = empty_collection(context, owner.name)
             for role, data in {**lines, **dots}.items():
                 obj = add_object(collection, owner, role, data)
                 if role in dots:
-                    obj["places"] = found.dots[role].ravel().tolist()
-        n_dots = sum(len(places) for places in found.dots.values())
-        tell(self, "INFO", f'{n_dots} critical points are in the collection "{collection.name}".')
-        return {"FINISHED"}
+                    obj["places"] = traced.dots[role].ravel().tolist()
+        n_dots = sum(len(places) for places in traced.dots.values())
+        return f'{n_dots} critical points are in the collection "{collection.name}".'
 
 
-def shown_level(mesh: bpy.types.Mesh, analysis: Any) -> int | None:
+def shown_level(mesh: bpy.types.Mesh, analysis: "compute.Analysis") -> int | None:
     """Return the level that a mesh shows, as far as the analysis has so many; None if it shows none."""
-    return min(state.summarize(mesh).level, analysis.hierarchy.n_levels - 1) if state.is_analyzed(mesh) else None
+    return min(read(mesh).level, analysis.hierarchy.n_levels - 1) if is_analyzed(mesh) else None
 
 
-def traced_complex(analysis: Any, level: int | None) -> TracedComplex:
+def traced_complex(analysis: "compute.Analysis", level: int | None) -> TracedComplex:
     """Return the lines and dots of a level."""
     found = analysis.complex_at_level(level)
     points, separatrices = found.critical_points, found.separatrices
     places = analysis.net.positions[points.vertex]
-    lines: dict[str, list[np.ndarray]] = {"rising": [], "falling": []}
+    lines: dict[str, list[NDArray[np.float64]]] = {"rising": [], "falling": []}
     for rises, line in zip(separatrices.rises, separatrices.lines, strict=True):
         lines["rising" if rises else "falling"].append(line)
     lines["level"] = [line for saddle in points.value[points.kind == 1] for line in found.level_lines(saddle)]
@@ -93,9 +92,9 @@ def empty_collection(context: bpy.types.Context, name: str) -> bpy.types.Collect
         collection = bpy.data.collections.new(f"Complex of {name}")
         collection[OF_OBJECT] = name
     if name_of_scene_collection(context, collection) is None:
-        context.scene.collection.children.link(collection)
-    for old in [obj for obj in collection.objects if ROLE in obj]:
-        data = old.data
+        present(context.scene).collection.children.link(collection)
+    for old in [obj for obj in collection.objects if obj.get(ROLE) is not None]:
+        data = present(old.data)
         bpy.data.objects.remove(old)
         if data.users == 0:
             bpy.data.batch_remove([data])
@@ -104,7 +103,7 @@ def empty_collection(context: bpy.types.Context, name: str) -> bpy.types.Collect
 
 def name_of_scene_collection(context: bpy.types.Context, collection: bpy.types.Collection) -> str | None:
     """Return the name of a collection if it is in the scene."""
-    return next((c.name for c in context.scene.collection.children_recursive if c == collection), None)
+    return next((c.name for c in present(context.scene).collection.children_recursive if c == collection), None)
 
 
 def add_object(
@@ -114,12 +113,12 @@ def add_object(
     obj = bpy.data.objects.new(data.name, data)
     obj[ROLE] = role
     obj.parent = owner
-    obj.color = (*COMPLEX_COLOURS[role], 1.0)
+    obj.color.foreach_set((*COMPLEX_COLOURS[role], 1.0))
     collection.objects.link(obj)
     return obj
 
 
-def curve_of(role: str, lines: list[np.ndarray], radius: float) -> bpy.types.Curve:
+def curve_of(role: str, lines: list[NDArray[np.float64]], radius: float) -> bpy.types.Curve:
     """Return a round curve with a spline for each line."""
     curve = bpy.data.curves.new(f"{role.capitalize()} lines", "CURVE")
     curve.dimensions = "3D"
@@ -133,7 +132,7 @@ def curve_of(role: str, lines: list[np.ndarray], radius: float) -> bpy.types.Cur
     return curve
 
 
-def dots_of(role: str, places: np.ndarray, radius: float) -> bpy.types.Mesh:
+def dots_of(role: str, places: NDArray[np.float64], radius: float) -> bpy.types.Mesh:
     """Return a mesh of small balls."""
     ball, faces = _ball()
     vertices = (places[:, None] + radius * ball).reshape(-1, 3)
@@ -151,11 +150,11 @@ def material_of(role: str) -> bpy.types.Material:
     if material is None:
         material = bpy.data.materials.new(f"Complex {role}")
         material[ROLE] = role
-        material.diffuse_color = (*COMPLEX_COLOURS[role], 1.0)
+        material.diffuse_color.foreach_set((*COMPLEX_COLOURS[role], 1.0))
     return material
 
 
-def _ball() -> tuple[np.ndarray, np.ndarray]:
+def _ball() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return a ball of radius 1 made of quads; those at the poles are flat."""
     turn, fall = np.meshgrid(np.arange(DOT_SEGMENTS), np.arange(DOT_RINGS + 1), indexing="ij")
     longitude, latitude = 2 * np.pi * turn / DOT_SEGMENTS, np.pi * fall / DOT_RINGS

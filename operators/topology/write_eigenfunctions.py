@@ -1,31 +1,45 @@
 """Operator: write the eigenfunctions of a mesh as attributes of its vertices."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 import bpy
 import numpy as np
-from bpy.props import IntProperty
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
+from ..blender.outcome import Outcome
+from ..blender.typed_properties import IntProperty, TypedProperties
 from ..jobs import background
 from ..jobs.background import BackgroundOperator
+from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data import mesh_arrays
 from ..mesh_data.mesh_arrays import OwnAttribute
+from ..messages.sentences import Messages
 from ..messages.user_errors import can_use_active_mesh
-from ..parts.analyze import Ticket, find_mesh
 
 PREFIX = "eigenfunction_"
+LOOSE_PARTS = "The mesh has {} loose parts; the eigenfunctions are those of the largest, and 0 on the others."
 
 
-class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator):
+@dataclass(frozen=True, eq=False)
+class VertexFunctions:
+    """Eigenfunctions as (V, k) float32 on the vertices, and what is to be told of the mesh."""
+
+    values: NDArray[np.float32]
+    warnings: tuple[str, ...]
+
+
+class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bpy.types.Operator):
     """Write the smoothest eigenfunctions of the active mesh as vertex attributes"""
 
     bl_idname = "eigenparts.write_eigenfunctions"
     bl_label = "Write Eigenfunctions"
     bl_options = {"UNDO"}
 
-    n_functions: IntProperty(
+    n_functions: int = IntProperty(
         name="Number",
         description="How many functions are written, from the smoothest on",
         default=6,
@@ -37,19 +51,20 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, bpy.types.Operator)
     def poll(cls, context: bpy.types.Context) -> bool:
         return background.can_start_job(cls) and can_use_active_mesh(cls, context)
 
-    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., np.ndarray], Ticket]:
-        mesh = context.object.data
+    def begin(self, context: bpy.types.Context) -> tuple[Callable[..., VertexFunctions], MeshHandle]:
+        mesh = mesh_of(context.object)
         mesh_arrays.refuse_foreign(mesh, _attributes(self.n_functions))
-        ticket = Ticket(mesh.session_uid, mesh_arrays.fingerprint(mesh))
-        return partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions), ticket
+        solve = partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions)
+        return solve, MeshHandle.of(present(context.object))
 
-    def finish(self, context: bpy.types.Context, ticket: Ticket, result: np.ndarray) -> set[str]:
-        mesh = find_mesh(ticket)
+    def finish(self, context: bpy.types.Context, handle: MeshHandle, result: VertexFunctions) -> Outcome:
+        mesh = handle.find_mesh()
         old = [name for name in mesh_arrays.own_names(mesh) if name.startswith(PREFIX)]
         mesh_arrays.remove_own_attributes(mesh, old)
-        for own, function in zip(_attributes(self.n_functions), result.T, strict=True):
+        for own, function in zip(_attributes(self.n_functions), result.values.T, strict=True):
             mesh_arrays.write_attribute(mesh, own, function)
         mesh.update()
+        Messages(warnings=result.warnings).report(self)
         return {"FINISHED"}
 
 
@@ -59,11 +74,13 @@ def _attributes(n_functions: int) -> tuple[OwnAttribute, ...]:
 
 def _functions_on_vertices(
     arrays: mesh_arrays.MeshArrays, n_functions: int, progress: Callable[[float, str], None]
-) -> np.ndarray:
-    """Return (V, k) float32; knows nothing of Blender, so any thread may do it."""
+) -> VertexFunctions:
+    """Return the smoothest functions; knows nothing of Blender, so any thread may do it."""
     mesh = compute.TriangleMesh(arrays.vertices, arrays.triangles)
     basis = compute.solve_eigenbasis(mesh, n_functions, progress=progress)
-    return np.float32(basis.functions[: len(arrays.vertices)])
+    values = basis.functions[: len(arrays.vertices)].astype(np.float32)
+    n_parts = basis.surface.n_components
+    return VertexFunctions(values, (LOOSE_PARTS.format(n_parts),) if n_parts > 1 else ())
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_write_eigenfunctions,))

@@ -2,4 +2,6 @@
 
 import bpy
 
-register, unregister = bpy.utils.register_submodule_factory(__package__, ["transfer", "add_transfer_preset"])
+register, unregister = bpy.utils.register_submodule_factory(
+    __package__, ["transfer_options", "transfer", "add_transfer_preset"]
+)

@@ -3,10 +3,11 @@
 import bpy
 from bl_operators.presets import AddPresetBase
 
-from .transfer import TransferOptions
+from .transfer_options import TransferOptions
 
 
-class EIGENPARTS_OT_add_transfer_preset(AddPresetBase, bpy.types.Operator):
+# The stubs give the methods of Blender\'s own class no types.
+class EIGENPARTS_OT_add_transfer_preset(AddPresetBase, bpy.types.Operator):  # type: ignore[misc]
     """Keep what is transferred, and how, under a name, or remove the preset"""
 
     bl_idname = "eigenparts.add_transfer_preset"

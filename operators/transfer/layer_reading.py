@@ -5,14 +5,17 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
+from ..blender.known_values import data_of, mesh_of
 from ..mesh_data import mesh_arrays
-from ..mesh_data.attribute_values import STORAGES, read_attribute
-from ..mesh_state import state
+from ..mesh_data.attribute_values import STORAGES, kind_of, read_attribute
+from ..mesh_state.schema import ATTRIBUTES
 from ..messages.user_errors import Refusal
 from ..outputs import material_slots
-from ..outputs.part_writer import PART, read_labels
-from . import layers
+from ..outputs.division import PART
+from ..outputs.part_writer import read_labels
+from . import layer_choices, layers
 from .layers import Layer
 
 # Attributes that begin with a point are Blender's own, but these are made by hand.
@@ -23,13 +26,13 @@ ABSOLUTE = "The shape keys of {} are absolute; only relative ones can be transfe
 
 
 @dataclass(frozen=True)
-class Choice:
-    """Which layers are wanted.
+class LayerChoice:
+    """The layers that are wanted.
 
     Attributes
     ----------
     kinds : frozenset of str
-        "PARTS", "FACES", "GROUPS", "ATTRIBUTES", "COLORS", "UVS", "SHAPE_KEYS", "MATERIALS".
+        Some of ``layer_choices.LAYERS``.
     groups : str
         "ALL", "DEFORM" or "NAMED".
     group_names : tuple of str
@@ -43,19 +46,19 @@ class Choice:
     swaps_sides: bool
 
 
-def read_layers(obj: bpy.types.Object, choice: Choice) -> list[Layer]:
+def read_layers(obj: bpy.types.Object, choice: LayerChoice) -> list[Layer]:
     """Return the chosen layers of an object, under the names that they get on the targets."""
     readers = {
-        "PARTS": _parts,
-        "GROUPS": lambda obj: _groups(obj, _chosen_groups(obj, choice)),
-        "SHAPE_KEYS": _shape_keys,
-        "MATERIALS": _materials,
+        layer_choices.PARTS: _parts,
+        layer_choices.GROUPS: lambda obj: _groups(obj, _chosen_groups(obj, choice)),
+        layer_choices.SHAPE_KEYS: _shape_keys,
+        layer_choices.MATERIALS: _materials,
     }
-    found = [layer for kind, read in readers.items() if kind in choice.kinds for layer in read(obj)]
-    found += [layer for kind, layer in _attributes(obj.data) if kind in choice.kinds]
-    if not found:
+    given = [layer for kind, read in readers.items() if kind in choice.kinds for layer in read(obj)]
+    given += [layer for kind, layer in _attributes(mesh_of(obj)) if kind in choice.kinds]
+    if not given:
         raise Refusal(f"{obj.name} has none of the layers that were chosen.")
-    return [_with_side(layer) for layer in found] if choice.swaps_sides else found
+    return [_with_side(layer) for layer in given] if choice.swaps_sides else given
 
 
 def _with_side(layer: Layer) -> Layer:
@@ -65,15 +68,15 @@ def _with_side(layer: Layer) -> Layer:
 
 
 def _parts(obj: bpy.types.Object) -> Iterator[Layer]:
-    mesh = obj.data
+    mesh = mesh_of(obj)
     if PART.name in mesh_arrays.own_names(mesh) and PART.name in mesh.attributes:
         yield Layer(layers.PARTS, PART.name, read_labels(mesh).reshape(-1, 1), "INT")
 
 
-def _chosen_groups(obj: bpy.types.Object, choice: Choice) -> list[str]:
-    present = [group.name for group in obj.vertex_groups]
+def _chosen_groups(obj: bpy.types.Object, choice: LayerChoice) -> list[str]:
+    known = [group.name for group in obj.vertex_groups]
     if choice.groups == "NAMED":
-        missing = [name for name in choice.group_names if name not in present]
+        missing = [name for name in choice.group_names if name not in known]
         if missing:
             raise Refusal(f'{obj.name} has no vertex group "{missing[0]}".')
         return list(choice.group_names)
@@ -81,17 +84,17 @@ def _chosen_groups(obj: bpy.types.Object, choice: Choice) -> list[str]:
         bones = _deform_bones(obj)
         if not bones:
             raise Refusal(f"{obj.name} has no armature whose bones deform it; transfer all groups or name some.")
-        return [name for name in present if name in bones]
-    return present
+        return [name for name in known if name in bones]
+    return known
 
 
 def _deform_bones(obj: bpy.types.Object) -> set[str]:
-    rigs = [modifier.object for modifier in obj.modifiers if modifier.type == "ARMATURE"] + [obj.parent]
+    rigs = [modifier.object for modifier in obj.modifiers if isinstance(modifier, bpy.types.ArmatureModifier)]
     return {
         bone.name
-        for rig in rigs
+        for rig in (*rigs, obj.parent)
         if rig is not None and rig.type == "ARMATURE"
-        for bone in rig.data.bones
+        for bone in data_of(rig, bpy.types.Armature).bones
         if bone.use_deform
     }
 
@@ -102,12 +105,12 @@ def _groups(obj: bpy.types.Object, names: list[str]) -> Iterator[Layer]:
         yield Layer(layers.GROUP, name, column.reshape(-1, 1))
 
 
-def read_weights(obj: bpy.types.Object, names: list[str]) -> np.ndarray:
+def read_weights(obj: bpy.types.Object, names: list[str]) -> NDArray[np.float64]:
     """Return (V, n) the weights of vertex groups, 0 where there is no such group or the vertex is not in it."""
-    weights = np.zeros((len(obj.data.vertices), len(names)))
+    weights = np.zeros((len(mesh_of(obj).vertices), len(names)))
     column = {obj.vertex_groups[name].index: place for place, name in enumerate(names) if name in obj.vertex_groups}
     # Blender gives weights away one vertex at a time only.
-    for vertex in obj.data.vertices if column else ():
+    for vertex in mesh_of(obj).vertices if column else ():
         for element in vertex.groups:
             if element.group in column:
                 weights[vertex.index, column[element.group]] = element.weight
@@ -115,7 +118,7 @@ def read_weights(obj: bpy.types.Object, names: list[str]) -> np.ndarray:
 
 
 def _shape_keys(obj: bpy.types.Object) -> Iterator[Layer]:
-    keys = obj.data.shape_keys
+    keys = mesh_of(obj).shape_keys
     if keys is None:
         return
     if not keys.use_relative:
@@ -125,7 +128,7 @@ def _shape_keys(obj: bpy.types.Object) -> Iterator[Layer]:
         yield Layer(layers.SHAPE_KEY, block.name, moved)
 
 
-def read_key(block: bpy.types.ShapeKey) -> np.ndarray:
+def read_key(block: bpy.types.ShapeKey) -> NDArray[np.float64]:
     """Return the (V, 3) positions of a shape key."""
     positions = np.empty(3 * len(block.data), dtype=np.float32)
     block.data.foreach_get("co", positions)
@@ -133,7 +136,7 @@ def read_key(block: bpy.types.ShapeKey) -> np.ndarray:
 
 
 def _materials(obj: bpy.types.Object) -> Iterator[Layer]:
-    mesh = obj.data
+    mesh = mesh_of(obj)
     names, indices = material_slots.assignment_of_user(mesh)
     if not names:
         return
@@ -142,15 +145,14 @@ def _materials(obj: bpy.types.Object) -> Iterator[Layer]:
 
 def _attributes(mesh: bpy.types.Mesh) -> Iterator[tuple[str, Layer]]:
     """Yield the attributes that are not ours, each with the kind of layer that it belongs to."""
-    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in state.ATTRIBUTES)}
+    ours = {*mesh_arrays.own_names(mesh), *(own.name for own in ATTRIBUTES)}
     for attribute in mesh.attributes:
         kind = _kind_of(attribute)
         is_blenders = attribute.name.startswith(".") and attribute.name not in MADE_BY_HAND
         if kind and not is_blenders and attribute.name not in ours and attribute.name not in NOT_ATTRIBUTES:
-            layer = Layer(
-                attribute.domain, attribute.name, read_attribute(attribute), attribute.data_type, is_uv=kind == "UVS"
-            )
-            yield kind, layer
+            data_type, domain = kind_of(attribute)
+            is_uv = kind == layer_choices.UVS
+            yield kind, Layer(domain, attribute.name, read_attribute(attribute), data_type, is_uv=is_uv)
 
 
 def _kind_of(attribute: bpy.types.Attribute) -> str:
@@ -158,7 +160,7 @@ def _kind_of(attribute: bpy.types.Attribute) -> str:
     if attribute.data_type not in STORAGES:
         return ""
     if attribute.data_type in ("FLOAT_COLOR", "BYTE_COLOR") and attribute.domain in ("POINT", "CORNER"):
-        return "COLORS"
+        return layer_choices.COLORS
     if attribute.domain == "CORNER":
-        return "UVS" if attribute.data_type == "FLOAT2" else ""
-    return {"POINT": "ATTRIBUTES", "FACE": "FACES"}.get(attribute.domain, "")
+        return layer_choices.UVS if attribute.data_type == "FLOAT2" else ""
+    return {"POINT": layer_choices.ATTRIBUTES, "FACE": layer_choices.FACES}.get(attribute.domain, "")

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 import bpy
 
+from ..blender.known_values import mesh_of, present
 from ..mesh_data.attribute_values import read_attribute, store_values
 from ..outputs.rollback import all_or_nothing
 from . import layers
@@ -25,11 +26,11 @@ def layers_or_nothing(obj: bpy.types.Object, given: list[Layer]) -> Iterator[Non
     ]
     places = (
         (obj.vertex_groups, "active_index"),
-        (obj.data.uv_layers, "active_index"),
+        (mesh_of(obj).uv_layers, "active_index"),
         (obj, "active_shape_key_index"),
     )
     active = [(owner, name, getattr(owner, name)) for owner, name in places]
-    with all_or_nothing(obj.data):
+    with all_or_nothing(mesh_of(obj)):
         try:
             yield
         except BaseException:
@@ -57,11 +58,11 @@ def _group(obj: bpy.types.Object, name: str) -> Callable[[], None]:
 
 
 def _shape_key(obj: bpy.types.Object, name: str) -> Callable[[], None]:
-    block = obj.data.shape_keys.key_blocks.get(name)
+    block = present(mesh_of(obj).shape_keys).key_blocks.get(name)
     places = None if block is None else read_key(block)
 
     def give_back() -> None:
-        block = obj.data.shape_keys.key_blocks.get(name)
+        block = present(mesh_of(obj).shape_keys).key_blocks.get(name)
         if block is None:
             return
         if places is None:
@@ -73,7 +74,7 @@ def _shape_key(obj: bpy.types.Object, name: str) -> Callable[[], None]:
 
 
 def _attribute(obj: bpy.types.Object, name: str) -> Callable[[], None]:
-    attributes = obj.data.attributes
+    attributes = mesh_of(obj).attributes
     values = read_attribute(attributes[name]) if name in attributes else None
 
     def give_back() -> None:

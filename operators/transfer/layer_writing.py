@@ -1,18 +1,21 @@
 """Write transferred layers to an object, mixed with what is there; what stands in the way is told before."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, cast
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
+from ..blender.known_values import mesh_of, present
 from ..mesh_data import mesh_arrays
-from ..mesh_data.attribute_values import read_attribute, store_values
+from ..mesh_data.attribute_values import Domain, read_attribute, store_values
 from ..mesh_state import state
 from ..messages.user_errors import Refusal, in_name_of
 from ..outputs import corner_colours
-from ..outputs.division import Division
-from ..outputs.part_writer import PART
+from ..outputs.division import PART, Division
 from . import layers
 from .layer_reading import ABSOLUTE, read_key, read_weights
 from .layers import Layer
@@ -24,10 +27,13 @@ MOST_UV_LAYERS = 8
 
 @dataclass(frozen=True)
 class Mix:
-    """How much of what comes is taken: a factor, and the name of a vertex group that holds a share of it."""
+    """Share of the new values: a factor, and the name of a vertex group whose weights it is multiplied with."""
 
     factor: float
     mask: str
+
+
+WHOLE = Mix(1.0, "")
 
 
 def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> None:
@@ -38,13 +44,13 @@ def refuse_obstacles(obj: bpy.types.Object, given: list[Layer], mix: Mix) -> Non
             raise Refusal(f'There is no vertex group "{mix.mask}" to be used as the mask.')
         for layer in given:
             _OBSTACLES.get(layer.kind, _refuse_clash)(obj, layer)
-        new_uvs = {layer.name for layer in given if layer.is_uv} - {uv.name for uv in obj.data.uv_layers}
-        if len(obj.data.uv_layers) + len(new_uvs) > MOST_UV_LAYERS:
+        new_uvs = {layer.name for layer in given if layer.is_uv} - {uv.name for uv in mesh_of(obj).uv_layers}
+        if len(mesh_of(obj).uv_layers) + len(new_uvs) > MOST_UV_LAYERS:
             raise Refusal(f"A mesh can have {MOST_UV_LAYERS} UV maps; delete some first.")
 
 
 def _refuse_linked(obj: bpy.types.Object) -> None:
-    if obj.library is not None or obj.data.library is not None:
+    if obj.library is not None or mesh_of(obj).library is not None:
         raise Refusal("The object or its mesh is linked from another file; make it local first.")
 
 
@@ -54,7 +60,7 @@ def _refuse_locked(obj: bpy.types.Object, layer: Layer) -> None:
 
 
 def _refuse_missing_basis(obj: bpy.types.Object, layer: Layer) -> None:
-    keys = obj.data.shape_keys
+    keys = mesh_of(obj).shape_keys
     if keys is None:
         raise Refusal("The mesh has no Basis that shape keys could start from; add a shape key first.")
     if not keys.use_relative:
@@ -66,26 +72,30 @@ def _refuse_missing_basis(obj: bpy.types.Object, layer: Layer) -> None:
 
 
 def _refuse_foreign_part(obj: bpy.types.Object, layer: Layer) -> None:
-    mesh_arrays.refuse_foreign(obj.data, (PART, corner_colours.PART_COLOR))
+    mesh_arrays.refuse_foreign(mesh_of(obj), (PART, corner_colours.PART_COLOR))
 
 
 def _refuse_clash(obj: bpy.types.Object, layer: Layer) -> None:
-    present = obj.data.attributes.get(layer.name)
-    if present is not None and layer.name in mesh_arrays.own_names(obj.data):
+    existing = mesh_of(obj).attributes.get(layer.name)
+    if existing is not None and layer.name in mesh_arrays.own_names(mesh_of(obj)):
         raise Refusal(f'The attribute "{layer.name}" here is from Eigenparts; take it back, or rename the other one.')
-    if present is not None and (present.data_type, present.domain) != (layer.data_type, layer.kind):
+    if existing is not None and (existing.data_type, existing.domain) != (layer.data_type, layer.kind):
         raise Refusal(f'There is an attribute "{layer.name}" of another kind; rename one of them.')
+
+
+def _refuse_nothing(obj: bpy.types.Object, layer: Layer) -> None:
+    """Slots for materials can always be added."""
 
 
 _OBSTACLES = {
     layers.GROUP: _refuse_locked,
     layers.SHAPE_KEY: _refuse_missing_basis,
     layers.PARTS: _refuse_foreign_part,
-    layers.MATERIAL: lambda obj, layer: None,
+    layers.MATERIAL: _refuse_nothing,
 }
 
 
-def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: np.ndarray) -> None:
+def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: NDArray[np.float32]) -> None:
     """Write layers to an object that `refuse_obstacles` let pass.
 
     Parameters
@@ -93,15 +103,14 @@ def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: n
     colours : (n, 4) float32
         Of the parts, by their labels.
     """
-    share = _shares(obj, mix)
-    writers = {
-        layers.GROUP: lambda some: _write_groups(obj, some, share),
-        layers.SHAPE_KEY: lambda some: [_write_key(obj, layer, share) for layer in some],
-        layers.MATERIAL: lambda some: [_write_materials(obj.data, layer, share) for layer in some],
-        layers.PARTS: lambda some: [_write_parts(obj.data, layer, share, colours) for layer in some],
+    mesh, share = mesh_of(obj), _shares(obj, mix)
+    writers: dict[str, Callable[[Layer], None]] = {
+        layers.SHAPE_KEY: lambda layer: _write_key(obj, layer, share),
+        layers.MATERIAL: lambda layer: _write_materials(mesh, layer, share),
+        layers.PARTS: lambda layer: _write_parts(mesh, layer, share, colours),
     }
+    _write_groups(obj, [layer for layer in given if layer.kind == layers.GROUP], share)
     for kind in (
-        layers.GROUP,
         layers.POINT,
         layers.FACE,
         layers.CORNER,
@@ -109,21 +118,25 @@ def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: n
         layers.MATERIAL,
         layers.PARTS,
     ):
-        some = [layer for layer in given if layer.kind == kind]
-        if some:
-            writers.get(kind, lambda some: [_write_attribute(obj.data, layer, share) for layer in some])(some)
-    obj.data.update()
+        for layer in [layer for layer in given if layer.kind == kind]:
+            if kind in writers:
+                writers[kind](layer)
+            else:
+                _write_attribute(mesh, layer, share)
+    mesh.update()
 
 
-def _shares(obj: bpy.types.Object, mix: Mix) -> np.ndarray:
-    """Return (V,) how much of what comes each vertex takes."""
+def _shares(obj: bpy.types.Object, mix: Mix) -> NDArray[np.float64]:
+    """Return the (V,) share of the new values that each vertex takes."""
     if not mix.mask:
-        return np.full(len(obj.data.vertices), mix.factor)
+        return np.full(len(mesh_of(obj).vertices), mix.factor)
     return mix.factor * read_weights(obj, [mix.mask])[:, 0]
 
 
-def _write_groups(obj: bpy.types.Object, some: list[Layer], share: np.ndarray) -> None:
+def _write_groups(obj: bpy.types.Object, some: list[Layer], share: NDArray[np.float64]) -> None:
     names = [layer.name for layer in some]
+    if not names:
+        return
     before = read_weights(obj, names)
     after = compute.mixed(before, np.hstack([layer.values for layer in some]), share)
     for name, column, old in zip(names, np.clip(after, 0, 1).T, before.T, strict=True):
@@ -132,7 +145,7 @@ def _write_groups(obj: bpy.types.Object, some: list[Layer], share: np.ndarray) -
         fill_group(obj.vertex_groups[name], np.where(column < LEAST_WEIGHT, 0, column), old)
 
 
-def fill_group(group: bpy.types.VertexGroup, weights: np.ndarray, before: np.ndarray) -> None:
+def fill_group(group: bpy.types.VertexGroup, weights: NDArray[np.float64], before: NDArray[np.float64]) -> None:
     """Give vertices (V,) their weights in a group; where they have none they are taken out if they were in it."""
     group.remove(np.flatnonzero((weights == 0) & (before > 0)).tolist())
     group.add(np.flatnonzero(weights == 1).tolist(), 1.0, "REPLACE")
@@ -141,18 +154,18 @@ def fill_group(group: bpy.types.VertexGroup, weights: np.ndarray, before: np.nda
         group.add([vertex], weights[vertex], "REPLACE")
 
 
-def _write_key(obj: bpy.types.Object, layer: Layer, share: np.ndarray) -> None:
-    keys = obj.data.shape_keys
+def _write_key(obj: bpy.types.Object, layer: Layer, share: NDArray[np.float64]) -> None:
+    keys = present(mesh_of(obj).shape_keys)
     block = keys.key_blocks.get(layer.name)
     if block is None:
         block = obj.shape_key_add(name=layer.name, from_mix=False)
-        block.data.foreach_set("co", np.float32(read_key(keys.reference_key)).ravel())
+        block.data.foreach_set("co", read_key(keys.reference_key).astype(np.float32).ravel())
     basis = read_key(block.relative_key)
     moved = basis + compute.mixed(read_key(block) - basis, layer.values, share)
-    block.data.foreach_set("co", np.float32(moved).ravel())
+    block.data.foreach_set("co", moved.astype(np.float32).ravel())
 
 
-def _write_materials(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray) -> None:
+def _write_materials(mesh: bpy.types.Mesh, layer: Layer, share: NDArray[np.float64]) -> None:
     slot = np.array([_slot(mesh, name) for name in layer.names], dtype=np.int32)
     if "material_index" not in mesh.attributes:
         mesh.attributes.new("material_index", "INT", "FACE")
@@ -170,7 +183,7 @@ def _slot(mesh: bpy.types.Mesh, name: str) -> int:
     return slots.index(material)
 
 
-def _write_parts(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray, colours: np.ndarray) -> None:
+def _write_parts(mesh: bpy.types.Mesh, layer: Layer, share: NDArray[np.float64], colours: NDArray[np.float32]) -> None:
     """Write labels and colours of parts; a mesh with an analysis of its own keeps them, as its levels lead to them."""
     if state.is_analyzed(mesh):
         return
@@ -183,7 +196,7 @@ def _write_parts(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray, colours:
     corner_colours.write(mesh, Division(shown, {}, colours))
 
 
-def _write_attribute(mesh: bpy.types.Mesh, layer: Layer, share: np.ndarray) -> None:
+def _write_attribute(mesh: bpy.types.Mesh, layer: Layer, share: NDArray[np.float64]) -> None:
     attribute = mesh.attributes.get(layer.name) or _new_attribute(mesh, layer)
     before = read_attribute(attribute)
     share = _spread(mesh, layer.kind, share)
@@ -197,21 +210,22 @@ def _new_attribute(mesh: bpy.types.Mesh, layer: Layer) -> bpy.types.Attribute:
     if layer.is_uv:
         mesh.uv_layers.new(name=layer.name)
         return mesh.attributes[layer.name]
-    return mesh.attributes.new(layer.name, layer.data_type, layer.kind)
+    assert layer.data_type
+    return mesh.attributes.new(layer.name, layer.data_type, cast(Domain, layer.kind))
 
 
-def _spread(mesh: bpy.types.Mesh, domain: str, share: np.ndarray) -> np.ndarray:
+def _spread(mesh: bpy.types.Mesh, domain: str, share: NDArray[np.float64]) -> NDArray[np.float64]:
     if domain == layers.CORNER:
         return share[mesh_arrays.vertex_of_corner(mesh)]
     return _of_faces(mesh, share) if domain == layers.FACE else share
 
 
-def _of_faces(mesh: bpy.types.Mesh, share: np.ndarray) -> np.ndarray:
+def _of_faces(mesh: bpy.types.Mesh, share: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return (F,) the mean share of the corners of each face."""
     n_corners = mesh_arrays.n_corners_of_polygon(mesh)
     face = np.repeat(np.arange(len(n_corners)), n_corners)
     return np.bincount(face, share[mesh_arrays.vertex_of_corner(mesh)], len(n_corners)) / n_corners
 
 
-def _replaced(before: np.ndarray, after: np.ndarray, share: np.ndarray) -> np.ndarray:
+def _replaced(before: NDArray[Any], after: NDArray[Any], share: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(compute.taken_over(share, len(before))[:, None], after, before)

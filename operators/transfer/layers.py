@@ -1,10 +1,11 @@
-"""What an artist puts on a mesh, layer by layer, as arrays: the common form for reading, transferring and writing."""
+"""Layers of a mesh as arrays: weights, maps, keys and the like in one form for reading, mapping and writing."""
 
 from dataclasses import dataclass, replace
+from typing import Any, Literal
 
-import numpy as np
+from numpy.typing import NDArray
 
-from ..mesh_data.attribute_values import STORAGES
+from ..mesh_data.attribute_values import STORAGES, AttributeType
 
 GROUP, POINT, FACE, CORNER, SHAPE_KEY, MATERIAL, PARTS = (
     "GROUP", "POINT", "FACE", "CORNER", "SHAPE_KEY", "MATERIAL", "PARTS",
@@ -31,8 +32,8 @@ class Layer:
 
     kind: str
     name: str
-    values: np.ndarray
-    data_type: str = ""
+    values: NDArray[Any]
+    data_type: AttributeType | Literal[""] = ""
     names: tuple[str, ...] = ()
     is_uv: bool = False
 
@@ -43,6 +44,6 @@ class Layer:
             return True
         return self.kind in (POINT, CORNER) and STORAGES[self.data_type].can_blend
 
-    def with_values(self, values: np.ndarray) -> "Layer":
+    def with_values(self, values: NDArray[Any]) -> "Layer":
         """Return the layer with other values."""
         return replace(self, values=values)

@@ -115,11 +115,11 @@ def test_modifiers_that_change_faces_are_refused(star_object):
 
 
 def test_an_analysis_by_eigenfunction_tells_which_one_suits(star_object, extension):
-    hints = extension.operators.mesh_state.function_hints
+    room = extension.operators.mesh_state
     bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=1)
-    found = hints.read(star_object.data)
+    found = room.state.read(star_object.data).function_hints
     assert {number for number, _, _ in found} == set(range(1, 9))
     assert {n_protrusions for _, _, n_protrusions in found} == {5}
-    assert f"Eigenfunction {found[0][0]} suits best" in hints.sentence(star_object.data)
+    assert f"Eigenfunction {found[0][0]} suits best" in room.function_hints.sentence(found)
     bpy.ops.eigenparts.analyze(field="DIFFUSION")
-    assert hints.read(star_object.data) == []
+    assert room.state.read(star_object.data).function_hints == []

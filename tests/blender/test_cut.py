@@ -181,8 +181,7 @@ def exact_areas(analysis):
     areas = {}
     cuts = analysis.part_tree().cut_arcs(analysis.hierarchy.default_level, "features")
     for tree, arc, cut in zip(analysis.hierarchy.trees, analysis._arc_of_vertex, cuts, strict=True):
-        rising = -analysis.field.values if tree.is_of_maxima else analysis.field.values
-        shares = arc_areas(rising, arc, tree, analysis.net, np.arange(len(analysis.net.triangles)))
+        shares = arc_areas(analysis.field.values, arc, tree, analysis.net, np.arange(len(analysis.net.triangles)))
         labels = tree.spread(cut)[shares.arc]
         areas |= {part: shares.area[labels == part].sum() for part in np.unique(labels).tolist() if part}
     return areas

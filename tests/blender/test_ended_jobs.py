@@ -19,7 +19,7 @@ def test_a_cancel_at_any_step_of_progress_changes_nothing(analyzed, monkeypatch)
     before, n_steps = all_of(analyzed.data), 0
     while True:
         report = Failing(lambda fraction, text: None, n_steps + 1, engine.Cancelled)
-        monkeypatch.setattr(background, "_silent", report)
+        monkeypatch.setattr(background, "silent", report)
         with suppress(RuntimeError):
             bpy.ops.eigenparts.analyze(field="EIGENFUNCTION", eigenfunction=2, order="1")
         if report.n_calls <= n_steps:
@@ -40,7 +40,7 @@ def test_a_cancelled_longer_job_changes_nothing(analyzed, star, monkeypatch, ope
     before, names = [all_of(obj.data) for obj in (analyzed, other)], set(bpy.data.objects.keys())
     for n in (1, 2):
         report = Failing(lambda fraction, text: None, n, engine.Cancelled)
-        monkeypatch.setattr(background, "_silent", report)
+        monkeypatch.setattr(background, "silent", report)
         options = {} if operator == "transfer" else {"order": "1"}
         with pytest.raises(RuntimeError):
             getattr(bpy.ops.eigenparts, operator)(**options)
@@ -50,7 +50,7 @@ def test_a_cancelled_longer_job_changes_nothing(analyzed, star, monkeypatch, ope
 
 
 def test_out_of_memory_in_the_engine_changes_nothing(analyzed, monkeypatch):
-    from eigenparts.compute import analysis
+    from eigenparts.compute.analysis import analyze as analysis
 
     before = all_of(analyzed.data)
     with monkeypatch.context() as patch:
@@ -82,14 +82,13 @@ def test_a_job_ends_with_the_file_it_was_started_in(extension, star_object):
 
 
 def test_a_result_for_a_file_that_is_gone_is_dropped(star_object, extension):
-    from eigenparts.operators.mesh_data import mesh_arrays
+    from eigenparts.operators.jobs.mesh_handle import MeshHandle
     from eigenparts.operators.messages import user_errors
-    from eigenparts.operators.parts.analyze import Ticket, find_mesh
 
-    ticket = Ticket(star_object.data.session_uid, mesh_arrays.fingerprint(star_object.data))
+    handle = MeshHandle.of(star_object)
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     with pytest.raises(user_errors.Refusal, match="deleted"):
-        find_mesh(ticket)
+        handle.find_mesh()
 
 
 def test_the_thread_of_a_job_does_not_keep_blender_open(extension):

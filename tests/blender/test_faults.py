@@ -10,13 +10,11 @@ from tests import shapes
 from tests.blender.conftest import add_object, analyzed_star, values_of
 from tests.blender.drawn import draw_panels
 from tests.blender.failing import (
-    Failing,
     all_of,
     blocks,
     fail_at,
     fails_at_every_call,
     groups_of,
-    module_of_operators,
     object_as_it_is,
 )
 
@@ -28,9 +26,10 @@ def star():
 
 
 WRITERS = (
-    *("state.write_attribute", "state.packed", "state.packed_array", "state.remove_own_attributes"),
-    *("part_writer.write_attribute", "vertex_map.write_attribute", "corner_colours.write_attribute"),
-    *("part_table.number_parts", "part_writer._list_parts", "function_hints.store"),
+    *("mesh_arrays.write_attribute", "stored_analysis.packed", "stored_analysis.packed_array"),
+    "mesh_arrays.remove_own_attributes",
+    *("division_writer.write_attributes", "vertex_map.write_attribute", "corner_colours.write_attribute"),
+    *("division_writer.number_parts", "division_writer.list_parts", "function_hints.packed_hints"),
 )
 
 
@@ -56,7 +55,9 @@ def test_out_of_memory_while_an_analysis_is_written_changes_nothing(star_object,
     assert all_of(star_object.data) != before
 
 
-@pytest.mark.parametrize("writer", ["state.write_attribute", "part_writer.write_attribute", "registering.match_of"])
+@pytest.mark.parametrize(
+    "writer", ["mesh_arrays.write_attribute", "division_writer.write_attributes", "mesh_registration.match_of"]
+)
 def test_a_registration_is_written_to_all_meshes_or_to_none(star, monkeypatch, writer):
     objects = [add_object((1 + k) * star.vertices, star.triangles, f"star {k}") for k in range(3)]
     before = [all_of(obj.data) for obj in objects]
@@ -68,12 +69,12 @@ def test_a_registration_is_written_to_all_meshes_or_to_none(star, monkeypatch, w
         assert [all_of(obj.data) for obj in objects] == before
 
 
-@pytest.mark.parametrize("step", ["state.store_branches", "part_writer.segment_mesh", "mesh_arrays.read_mesh"])
+@pytest.mark.parametrize(
+    "step", ["analysis_writer.store_branches", "part_writer.segment_mesh", "analyzed_faces.read_mesh"]
+)
 def test_a_cut_that_fails_leaves_the_faces(analyzed, monkeypatch, step):
     before = all_of(analyzed.data)
-    owner = module_of_operators("cut" if step == "mesh_arrays.read_mesh" else step.split(".")[0])
-    name = step.split(".")[1]
-    monkeypatch.setattr(owner, name, Failing(getattr(owner, name), 1))
+    fail_at(monkeypatch, step, 1)
     with pytest.raises(RuntimeError):
         bpy.ops.eigenparts.cut()
     assert all_of(analyzed.data) == before
@@ -85,7 +86,7 @@ def test_a_cut_that_fails_leaves_weights_keys_and_maps(analyzed, monkeypatch):
     analyzed.shape_key_add(name="wide").data[5].co.x += 1
     analyzed.data.uv_layers.new(name="map").uv[7].vector = 0.25, 0.75
     before = all_of(analyzed.data), object_as_it_is(analyzed), values_of(analyzed.data, "map", 2, np.float32, "vector")
-    fail_at(monkeypatch, "state.store_branches", 1)
+    fail_at(monkeypatch, "analysis_writer.store_branches", 1)
     with pytest.raises(RuntimeError):
         bpy.ops.eigenparts.cut()
     after = all_of(analyzed.data), object_as_it_is(analyzed), values_of(analyzed.data, "map", 2, np.float32, "vector")
@@ -139,8 +140,9 @@ CHANGES = {
 }
 # Everything that is written with, down to what hands groups and materials over to Blender.
 LEVEL_WRITERS = (
-    *("part_writer.write_attribute", "part_writer._list_parts", "part_table.number_parts", "state.packed"),
-    *("corrections.write_attribute", "corrections.packed", "corrections.remove_own_attributes"),
+    *("division_writer.write_attributes", "division_writer.list_parts", "division_writer.number_parts"),
+    *("division_writer.packed", "division_writer.remember"),
+    *("mesh_arrays.write_attribute", "corrections.packed_branches", "mesh_arrays.remove_own_attributes"),
     *("vertex_map.write_attribute", "corner_colours.write_attribute", "face_sets.write_attribute"),
     *("field_values.write_attribute", "vertex_groups._groups", "vertex_groups._fill_softly", "vertex_groups._drop"),
     *("material_slots._slot", "material_slots._dress", "material_slots._assign", "material_slots._drop_slots"),
@@ -224,7 +226,7 @@ def found_once(extension, monkeypatch):
     """A transfer finds only once what it writes again and again."""
     from eigenparts.operators.transfer import transfer
 
-    monkeypatch.setattr(transfer, "_transfer", cache_of_one(transfer._transfer))
+    monkeypatch.setattr(transfer, "_map_layers", cache_of_one(transfer._map_layers))
 
 
 def cache_of_one(function):
@@ -248,7 +250,12 @@ def test_a_transfer_is_written_to_all_objects_or_to_none(dressed, found_once, mo
 
 MAKERS = {
     "create_armature": (
-        *("part_sides.remember", "bone_layout.remember", "create_armature.add_armature", "create_armature._add_bones"),
+        *(
+            "part_sides.packed_sides",
+            "bone_layout.packed_layout",
+            "create_armature.add_armature",
+            "create_armature._add_bones",
+        ),
         *("create_armature._colour_bones", "create_armature.bind"),
     ),
     "create_skeleton_curves": ("create_skeleton_curves.add_curve",),

@@ -6,6 +6,7 @@ import pytest
 
 from compute import TriangleMesh, solve_eigenbasis
 from tests.blender.conftest import add_object, everything_on, values_of
+from tests.blender.drawn import Layout, draw_panels
 
 
 def labels_of(obj):
@@ -170,3 +171,24 @@ def test_an_eigenfunction_attribute_of_the_user_is_not_overwritten(star_object):
     with pytest.raises(RuntimeError, match="not from Eigenparts"):
         bpy.ops.eigenparts.write_eigenfunctions()
     assert "eigenfunction_1" not in star_object.data.attributes
+
+
+def test_every_output_has_a_tick_box_and_a_row_in_the_panel(analyzed, extension, monkeypatch):
+    from eigenparts.operators.outputs.output_registry import OUTPUTS
+
+    items = bpy.ops.eigenparts.write_outputs.get_rna_type().properties["outputs"].enum_items
+    assert [item.identifier for item in items] == list(OUTPUTS)
+    shown = []
+    monkeypatch.setattr(Layout, "prop", lambda self, owner, name, **options: shown.append(name))
+    draw_panels()
+    for output in OUTPUTS.values():
+        box = type(analyzed.data.eigenparts).bl_rna.properties[output.property_name]
+        assert (box.name, box.description) == (output.name, output.description)
+        assert {output.property_name, *output.options} <= set(shown)
+
+
+def test_no_two_outputs_write_the_same_attribute(extension):
+    from eigenparts.operators.outputs import output_registry as registry
+
+    names = [attribute.name for attribute in registry.attributes_of(tuple(registry.OUTPUTS.values()))]
+    assert len(set(names)) == len(names)

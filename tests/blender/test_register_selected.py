@@ -86,9 +86,9 @@ def agreement(reference, target):
 
 
 def registration_of(obj):
-    from eigenparts.operators.mesh_state import registration_record
+    from eigenparts.operators.mesh_state.state import read
 
-    return registration_record.read(obj.data)
+    return read(obj.data).match
 
 
 def test_every_part_has_the_number_of_the_reference(registered):
@@ -324,16 +324,17 @@ def test_a_reference_that_is_gone_is_told(registered):
 def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
     """Cancelled as the window does it: at a report of progress while the pair is matched."""
     from eigenparts import compute as engine
-    from eigenparts.operators.registration.registering import Registers, Wish
+    from eigenparts.operators.parts.analysis_settings import AnalysisSettings
+    from eigenparts.operators.registration.match_options import MatchOptions
+    from eigenparts.operators.registration.registration_operator import RegistrationOperator
 
     def cancel(fraction, text):
         if "order and signs" in text:
             raise engine.Cancelled
 
     before = everything_on(fist.data)
-    settings = {"field": "DIFFUSION", "eigenfunction": 1, "attribute": "", "order": "AUTO", "boundary": "NEUMANN"}
-    settings |= {"shells": "BRIDGED", "use_modifiers": False}
-    work, _ = Registers.start(None, bpy.context, rest, [fist], Wish(mirrored=True), settings)
+    options, settings = MatchOptions(mirrored=True), AnalysisSettings()
+    work, _ = RegistrationOperator.start(None, bpy.context, rest, [fist], options, settings)
     with pytest.raises(engine.Cancelled):
         work(cancel)
     assert everything_on(fist.data) == before

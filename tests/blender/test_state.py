@@ -119,6 +119,14 @@ def name_a_huge_part(obj):
     state_of(obj)["tree_0"]["part"]["values"] = [2**31 - 1] * len(state_of(obj)["tree_0"]["part"]["values"])
 
 
+def close_below_all_levels(obj):
+    state_of(obj)["tree_0"]["closing"]["values"] = [-7] * len(state_of(obj)["tree_0"]["part"]["values"])
+
+
+def drop_a_measure(obj):
+    del state_of(obj)["tree_0"]["roundness"]
+
+
 def leave_a_bare_number(obj):
     obj.data["eigenparts_state"] = 7
 
@@ -134,6 +142,8 @@ def leave_a_bare_number(obj):
         claim_an_odd_type,
         put_text_for_numbers,
         name_a_huge_part,
+        close_below_all_levels,
+        drop_a_measure,
         leave_a_bare_number,
     ],
 )
@@ -143,6 +153,19 @@ def test_a_damaged_state_is_refused_until_the_next_analysis(analyzed, labels_at_
         bpy.ops.eigenparts.segment(level=2)
     bpy.ops.eigenparts.analyze()
     np.testing.assert_array_equal(segmented_at(analyzed, 2), labels_at_two)
+
+
+def test_the_columns_of_a_state_are_those_that_saved_files_have(analyzed):
+    """Files of version 2 of the schema are read by these names."""
+    state = state_of(analyzed)
+    assert state["schema"] == 2
+    tree = {"is_of_maxima", "n_roots", "n_features", "parent", "part", "extremum", "saddle", "closing"}
+    assert set(state["tree_0"].keys()) == tree | {"height", "closing_length", "longest", "roundness"}
+    assert set(state["branches_0"].keys()) == {"arc", "area", "n_faces", "borders", "border_length"}
+    assert set(state["hierarchy"].keys()) == {"pairs", "persistence", "is_maximum", "value_range", "n_levels"}
+    closing, parent = (np.array(state["tree_0"][column]["values"]) for column in ("closing", "parent"))
+    assert closing[parent == -1].tolist() == [2**31 - 1]
+    assert np.isnan(np.array(state["closing_heights_0"]["values"])[parent == -1]).all()
 
 
 def test_a_newer_version_is_refused(analyzed):

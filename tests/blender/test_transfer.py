@@ -353,3 +353,14 @@ def test_without_a_target_it_is_told(rest, bent):
     bent.select_set(False)
     with pytest.raises(RuntimeError, match="Select the meshes to transfer to"):
         bpy.ops.eigenparts.transfer()
+
+
+def test_the_operator_and_the_panel_offer_the_layers_that_are_declared(extension):
+    from eigenparts.operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS
+
+    for layers in (
+        bpy.ops.eigenparts.transfer.get_rna_type().properties["layers"],
+        bpy.context.scene.eigenparts_transfer.bl_rna.properties["layers"],
+    ):
+        assert {item.identifier: (item.name, item.description) for item in layers.enum_items} == LAYERS
+        assert layers.default_flag == set(DEFAULT_LAYERS)

@@ -29,7 +29,7 @@ def texts_of_window(extension):
         *(texts_of_property(switch) for switch in own_switches()),
         *map(texts_of_source, (ROOT / "ui").glob("*.py")),
         {extension.ui.tab.NO_MESH, extension.ui.panel.FIRST_STEP},
-        {extension.operators.mesh_state.state.ABSENT, extension.operators.mesh_state.state.DAMAGED},
+        {extension.operators.mesh_state.schema.ABSENT, extension.operators.mesh_state.schema.DAMAGED},
     )
     return {text for text in found if any(letter.isalpha() for letter in text)} - NAMES
 

@@ -28,7 +28,7 @@ def test_the_code_of_the_scripting_page_runs(tmp_path):
     script.write_text("\n".join([*blocks_of("scripting.md", "python"), end]))
     command = [sys.executable, "-W", "error::DeprecationWarning:__main__", script]
     paths = {"PYTHONPATH": f"{tmp_path}:{root}", "PATH": ""}
-    process = subprocess.run(command, cwd=tmp_path, env=paths, capture_output=True, text=True)
+    process = subprocess.run(command, cwd=tmp_path, env=paths, capture_output=True, text=True, timeout=300)
     assert process.returncode == 0, process.stdout + process.stderr
     assert (tmp_path / "monkeys_parts.blend").is_file()
 

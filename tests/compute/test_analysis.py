@@ -4,7 +4,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from compute import Cancelled, FieldError, LevelError, TriangleMesh, analyze
-from compute.segmentation.modes import MODES
+from compute.choices import MODES
 from tests.shapes import icosphere, joined, rectangle, star, torus
 
 

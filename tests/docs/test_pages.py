@@ -88,6 +88,19 @@ def test_command_lines_on_the_pages_are_understood(command):
     assert options.command == command.split()[0]
 
 
+def test_the_layers_of_a_transfer_are_those_of_the_window():
+    pytest.importorskip("bpy", reason="operators need Blender as a Python module")
+    from tools.extension import load_extension
+
+    load_extension()
+    choices = importlib.import_module("eigenparts.operators.transfer.layer_choices")
+    page = (ROOT / "docs/command_line.md").read_text()
+    (listed,) = re.findall(r"^\| `--layers KINDS` \| some of ([^|]*), with commas", page, re.MULTILINE)
+    named = [kind.upper() for kind in re.findall(r"`(\w+)`", listed)]
+    assert named == list(choices.LAYERS_OF_FILES)
+    assert set(choices.LAYERS) - set(named) == {choices.MATERIALS}
+
+
 def is_there(path):
     """Whether a file, a module or, after a dot, something in a module is in the project."""
     module, _, name = path.rpartition(".")

@@ -3,6 +3,8 @@
 import bpy
 import numpy as np
 
+from eigenparts.compute.surface.mesh import Floats
+from eigenparts.operators.blender.known_values import mesh_of, present
 from tools.pictures.characters import add_mesh
 
 BONE, JOINT = (0.02, 0.022, 0.026, 1.0), (1.0, 1.0, 1.0, 1.0)
@@ -18,27 +20,27 @@ SIDES = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 
 
 def bone_objects(armature: bpy.types.Object) -> list[bpy.types.Object]:
     """Return objects that look like the bones that deform, and their joints, as they are posed now."""
-    bpy.context.view_layer.update()
-    deforming = [bone for bone in armature.pose.bones if bone.bone.use_deform]
+    present(bpy.context.view_layer).update()
+    deforming = [bone for bone in present(armature.pose).bones if bone.bone.use_deform]
     heads, tails = (np.array([getattr(bone, end) for bone in deforming]) for end in ("head", "tail"))
     extent = float(np.ptp(np.concatenate([heads, tails]), axis=0).max())
     kites = np.concatenate([_kite(head, tail, extent) for head, tail in zip(heads, tails, strict=True)])
     faces = (SIDES + 6 * np.arange(len(deforming))[:, None, None]).reshape(-1, 3)
     bones = add_mesh("Bones", kites, faces)
-    bones.data.shade_flat()
-    bones.color = BONE
+    mesh_of(bones).shade_flat()
+    bones.color.foreach_set(BONE)
     joints = _balls(np.unique(np.concatenate([heads, tails]).round(6), axis=0), JOINT_RADIUS * extent)
-    joints.color = JOINT
+    joints.color.foreach_set(JOINT)
     for obj in (bones, joints):
         obj.matrix_world = armature.matrix_world
-    bpy.context.view_layer.update()
+    present(bpy.context.view_layer).update()
     return [bones, joints]
 
 
-def _kite(head: np.ndarray, tail: np.ndarray, extent: float) -> np.ndarray:
+def _kite(head: Floats, tail: Floats, extent: float) -> Floats:
     """Return the six corners of a bone."""
     along = tail - head
-    length = np.linalg.norm(along)
+    length = float(np.linalg.norm(along))
     across = np.cross(along, np.eye(3)[np.abs(along).argmin()])
     across *= min(THICKNESS * length, MOST_THICKNESS * extent) / np.linalg.norm(across)
     other = np.cross(along / length, across)
@@ -46,12 +48,12 @@ def _kite(head: np.ndarray, tail: np.ndarray, extent: float) -> np.ndarray:
     return np.vstack([head, ring, tail])
 
 
-def _balls(places: np.ndarray, radius: float) -> bpy.types.Object:
+def _balls(places: Floats, radius: float) -> bpy.types.Object:
     """Add a ball at each place, all of them one object."""
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3, radius=radius)
-    ball = bpy.context.object
-    corners = np.array([vertex.co for vertex in ball.data.vertices])
-    faces = np.array([face.vertices for face in ball.data.polygons])
+    ball = present(bpy.context.object)
+    corners = np.array([vertex.co for vertex in mesh_of(ball).vertices])
+    faces = np.array([face.vertices for face in mesh_of(ball).polygons])
     bpy.data.objects.remove(ball)
     offsets = len(corners) * np.arange(len(places))[:, None, None]
     return add_mesh("Joints", (places[:, None] + corners).reshape(-1, 3), (faces + offsets).reshape(-1, 3))

@@ -6,10 +6,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from compute import TriangleMesh, analyze
-from compute.registration.parts.population import Reference, prepare_reference, register_one
+from eigenparts.compute import TriangleMesh, analyze
+from eigenparts.compute.registration.parts.population import Reference, prepare_reference, register_one
+from eigenparts.compute.surface.mesh import Ints
+from eigenparts.operators.blender.known_values import mesh_of, present
 from examples import Character, humanoid, humanoid_poses
-from tools.pictures.characters import Coarse, add_mesh, between, coarsened, mesh_of, paint_faces, standing
+from tools.pictures.characters import Coarse, add_mesh, between, coarsened, paint_faces, standing, triangle_mesh
 from tools.pictures.moving import Frame, write_gif
 from tools.pictures.shots import shot
 from tools.render import View, world_positions
@@ -37,21 +39,21 @@ def draw(target: Path) -> None:
     sys.stdout.write(f"Least confidence of {len(confidence)} meshes: {min(confidence):.2f}\n")
     sys.stdout.flush()
     for obj in coarse:
-        obj.data.shade_flat()
+        mesh_of(obj).shade_flat()
         obj.location.x += SPACING
     write_gif(_frames(fine, coarse), target)
 
 
 def _take_parts(reference: Reference, obj: bpy.types.Object) -> float:
     """Paint an object in the parts of the reference; return how sure the matching is, from 0 to 1."""
-    found = register_one(reference, analyze(mesh_of(obj)))
+    found = register_one(reference, analyze(triangle_mesh(obj)))
     paint_faces(obj, found.segmentation.labels)
     return found.matching.confidence
 
 
 def _frames(fine: list[bpy.types.Object], coarse: list[bpy.types.Object]) -> list[Frame]:
     """Return a picture of each pair, all from the same place."""
-    bpy.context.view_layer.update()
+    present(bpy.context.view_layer).update()
     framed = np.concatenate([world_positions(obj) for obj in (*fine, *coarse)])
     view = View(azimuth=16, width=WIDTH, height=HEIGHT, samples=12, framed=framed)
     frames = []
@@ -60,7 +62,7 @@ def _frames(fine: list[bpy.types.Object], coarse: list[bpy.types.Object]) -> lis
     return frames
 
 
-def _moved(character: Character | Coarse, faces: np.ndarray) -> list[bpy.types.Object]:
+def _moved(character: Character | Coarse, faces: Ints) -> list[bpy.types.Object]:
     """Return a mesh for each frame, from pose to pose and back to the first."""
     poses = [humanoid_poses.POSES[name] for name in POSES]
     shares = np.linspace(0, 1, N_BETWEEN + 1, endpoint=False)

@@ -4,25 +4,35 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TypedDict
 
 import bpy
 import numpy as np
 from PIL import Image
 
-from compute import Analysis, Matching, TriangleMesh, analyze
-from compute.registration.eigenfunctions.matching import matching_shape
-from compute.registration.parts.population import label_matched, match_divisible, with_parts
-from compute.registration.parts.transferred_labels import Divisible, divisible
-from compute.surface.mesh import Ints
+from eigenparts.compute import Analysis, Matching, TriangleMesh, analyze
+from eigenparts.compute.registration.eigenfunctions.matching import matching_shape
+from eigenparts.compute.registration.parts.population import label_matched, match_divisible, with_parts
+from eigenparts.compute.registration.parts.transferred_labels import Divisible, divisible
+from eigenparts.compute.surface.mesh import Floats, Ints32
 from examples import Character, hand, humanoid, octopus, quadruped
 from tools.pictures.characters import FINGERS_UP, add_mesh, paint_faces
 from tools.pictures.lettering import sheet
 from tools.pictures.shots import light_on, shot_in_light
-from tools.render import View
+from tools.render import Pixels, View
 
 CELL = (260, 280)
+
+
+class Level(TypedDict, total=False):
+    """The choice of a level, by its number or by persistence."""
+
+    level: int
+    threshold: float
+
+
 # Names of the rows and how the level of the reference is chosen.
-LEVELS: dict[str, dict[str, float]] = {"Few": {"level": 2}, "Default": {}, "Fine": {"threshold": 1e-3}}
+LEVELS: dict[str, Level] = {"Few": {"level": 2}, "Default": {}, "Fine": {"threshold": 1e-3}}
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +55,7 @@ class Subject:
     poses: dict[str, int]
     azimuth: float
     elevation: float
-    upright: np.ndarray
+    upright: Floats
 
     @property
     def view(self) -> View:
@@ -117,11 +127,11 @@ def _row(name: str, level: str) -> list[Image.Image]:
 
 
 @cache
-def _light(name: str, pose: str) -> np.ndarray:
+def _light(name: str, pose: str) -> Pixels:
     return light_on([added(SUBJECTS[name].mesh(pose))], SUBJECTS[name].view)
 
 
-def _labels(name: str, level: str) -> list[Ints]:
+def _labels(name: str, level: str) -> list[Ints32]:
     """Return the part of each triangle of each pose."""
     family = _family(name)
     own = family.reference.segment(mode="nested", **LEVELS[level])
@@ -138,7 +148,7 @@ def _labels(name: str, level: str) -> list[Ints]:
 def _family(name: str) -> Family:
     analyses = [analyze(SUBJECTS[name].mesh(pose)) for pose in SUBJECTS[name].poses]
     shapes = [divisible(analysis, matching_shape(analysis)) for analysis in analyses]
-    own = analyses[0].segment()
+    own = analyses[0].segment(mode="features")
     reference = with_parts(shapes[0], own.labels.astype(np.int64), own.parts, own.level)
     return Family(analyses[0], shapes, [match_divisible(reference, shape) for shape in shapes[1:]])
 

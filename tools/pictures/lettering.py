@@ -21,11 +21,13 @@ TITLE_WIDTH, TITLE_HEIGHT, MARGIN = 190, 44, 24
 @cache
 def font(size: float, weight: int = 400) -> ImageFont.FreeTypeFont:
     """Return Inter, which every Blender brings along, in pixels; a weight of 600 is bold."""
-    path = Path(bpy.utils.system_resource("DATAFILES")) / "fonts" / "Inter.woff2"
+    # The stubs leave this function out.
+    path = Path(bpy.utils.system_resource("DATAFILES")) / "fonts" / "Inter.woff2"  # type: ignore[attr-defined]
     found = ImageFont.truetype(str(path), size)
     # The axes are the optical size and the weight, whichever comes first.
-    axes = {b"Weight": weight}
-    found.set_variation_by_axes([axes.get(axis["name"], axis["default"]) for axis in found.get_variation_axes()])
+    found.set_variation_by_axes(
+        [weight if axis["name"] == b"Weight" else axis["default"] or 0 for axis in found.get_variation_axes()]
+    )
     return found
 
 

@@ -6,15 +6,17 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.operators.blender.known_values import mesh_of, present
 from examples import Character, humanoid
+from tools.extension_operators import run_operator
 from tools.pictures.characters import add_mesh, analyze, level_of, segment, standing
 from tools.pictures.lettering import FINENESS, PALE_INK, PAPER, fine_lines, paper, write
 from tools.pictures.moving import Frame, write_gif
 from tools.pictures.shots import light_on, shot_in_light
-from tools.render import View
+from tools.render import Pixels, View
 
 POSE = "wave"
 N_VERTICES = 16000
@@ -34,7 +36,7 @@ N_BETWEEN, STEP_TIME, REST_TIME, END_TIME = 3, 40, 520, 1900
 
 @dataclass(frozen=True)
 class Step:
-    """What is shown at one level.
+    """The picture of one level.
 
     Attributes
     ----------
@@ -62,13 +64,13 @@ def draw(target: Path) -> None:
     write_gif(_frames([_step(obj, level, lit) for level in range(finest + 1)]), target)
 
 
-def _hand(character: Character) -> np.ndarray:
+def _hand(character: Character) -> NDArray[np.float64]:
     """Return the vertices of the hand that is enlarged."""
     shown = [i for i, name in enumerate(character.fine_part_names) if name in HAND]
     return standing(character, character.poses[POSE])[np.isin(character.fine_part_of_vertex, shown)]
 
 
-def _step(obj: bpy.types.Object, level: int, lit: Sequence[tuple[View, np.ndarray]]) -> Step:
+def _step(obj: bpy.types.Object, level: int, lit: Sequence[tuple[View, Pixels]]) -> Step:
     cut = _cut(obj, level)
     body, lens = (shot_in_light(light, [cut], view) for view, light in lit)
     image = paper(WIDTH, HEIGHT)
@@ -79,12 +81,11 @@ def _step(obj: bpy.types.Object, level: int, lit: Sequence[tuple[View, np.ndarra
 
 def _cut(obj: bpy.types.Object, level: int) -> bpy.types.Object:
     """Add a copy of an analyzed object in which the borders of a level run along edges."""
-    copy = obj.copy()
-    copy.data = obj.data.copy()
-    bpy.context.collection.objects.link(copy)
+    copy = present(obj.copy())
+    copy.data = mesh_of(obj).copy()
+    present(bpy.context.collection).objects.link(copy)
     segment(copy, level=level)
-    with quiet():
-        bpy.ops.eigenparts.cut()
+    run_operator("cut")
     return copy
 
 

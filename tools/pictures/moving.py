@@ -5,11 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 from scipy.cluster.vq import kmeans2
 from scipy.spatial import cKDTree
 
+from eigenparts.compute.surface.mesh import Floats, Ints
 from tools.pictures.lettering import INK
+
+Bytes = NDArray[np.uint8]
 
 # Of red, green and blue in one number.
 PLACES = np.array([65536, 256, 1])
@@ -50,13 +54,13 @@ def write_gif(frames: Sequence[Frame], target: Path) -> Path:
     return target
 
 
-def _with_palette(index: np.ndarray, palette: np.ndarray) -> Image.Image:
+def _with_palette(index: Bytes, palette: Ints) -> Image.Image:
     image = Image.fromarray(index, "P")
     image.putpalette(palette.astype(np.uint8).ravel().tolist())
     return image
 
 
-def _calmed(images: Sequence[np.ndarray]) -> list[np.ndarray]:
+def _calmed(images: Sequence[Bytes]) -> list[Bytes]:
     """Return pictures in which a pixel keeps its colour as long as it does not change visibly."""
     calm = [images[0]]
     for image in images[1:]:
@@ -65,7 +69,7 @@ def _calmed(images: Sequence[np.ndarray]) -> list[np.ndarray]:
     return calm
 
 
-def _palette(colours: np.ndarray, n_times: np.ndarray) -> np.ndarray:
+def _palette(colours: Ints, n_times: Ints) -> Ints:
     """Return (n, 3) colours for all frames, so that nothing flickers; greys are set, as shadows show every step.
 
     Parameters
@@ -83,7 +87,7 @@ def _palette(colours: np.ndarray, n_times: np.ndarray) -> np.ndarray:
     return np.concatenate([found, dark, light]).round().astype(int)
 
 
-def _clustered(colours: np.ndarray, weights: np.ndarray) -> np.ndarray:
+def _clustered(colours: Ints, weights: Floats) -> Ints | Floats:
     """Return few colours for many, or these themselves if they are few."""
     n_clusters = N_COLOURS - N_GREYS
     if len(colours) <= n_clusters:

@@ -5,30 +5,30 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import bpy
-import numpy as np
 from PIL import Image
 
 from eigenparts.cli.suppress_output import blender_is_quiet as quiet
-from tools.render import View, light, paint_light, render
+from eigenparts.operators.blender.known_values import present
+from tools.render import Pixels, View, light, paint_light, render
 
 
 def shot(objects: Sequence[bpy.types.Object], view: View, in_front: Sequence[bpy.types.Object] = ()) -> Image.Image:
     """Return a picture of some objects as they are now, with others in front of them."""
-    bpy.context.view_layer.update()
+    present(bpy.context.view_layer).update()
     with tempfile.TemporaryDirectory() as folder, quiet():
         path = render(objects, Path(folder) / "shot.png", view, in_front)
         return Image.open(path).convert("RGB")
 
 
-def light_on(objects: Sequence[bpy.types.Object], view: View) -> np.ndarray:
+def light_on(objects: Sequence[bpy.types.Object], view: View) -> Pixels:
     """Return the light on some objects, which stays while only their colours change."""
-    bpy.context.view_layer.update()
+    present(bpy.context.view_layer).update()
     with tempfile.TemporaryDirectory() as folder, quiet():
         return light(objects, Path(folder) / "light.png", view)
 
 
-def shot_in_light(lit: np.ndarray, objects: Sequence[bpy.types.Object], view: View) -> Image.Image:
+def shot_in_light(lit: Pixels, objects: Sequence[bpy.types.Object], view: View) -> Image.Image:
     """Return a picture of objects in a light that is known."""
-    bpy.context.view_layer.update()
+    present(bpy.context.view_layer).update()
     with tempfile.TemporaryDirectory() as folder, quiet():
         return Image.open(paint_light(lit, objects, Path(folder) / "shot.png", view)).convert("RGB")

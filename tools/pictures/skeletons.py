@@ -2,13 +2,16 @@
 
 from math import radians
 from pathlib import Path
+from typing import Literal
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
-from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.compute.surface.mesh import Floats
+from eigenparts.operators.blender.known_values import data_of, present
 from examples import humanoid
+from tools.extension_operators import run_operator
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, select, standing
 from tools.pictures.gallery import SUBJECTS, added
@@ -17,7 +20,7 @@ from tools.pictures.shots import shot
 from tools.render import View
 
 # Joints near which bones begin, and how these are turned: degrees about an axis of the scene.
-POSE = (
+POSE: tuple[tuple[tuple[float, float, float], float, Literal["X", "Y", "Z"]], ...] = (
     ((0.15, 0, 1.3), 55, "Y"),
     ((0.42, 0, 1.3), -50, "Z"),
     ((-0.15, 0, 1.3), -60, "Y"),
@@ -53,22 +56,23 @@ def draw_posed(target: Path) -> None:
 def _rigged(obj: bpy.types.Object) -> bpy.types.Object:
     analyze(obj)
     select([obj])
-    with quiet():
-        bpy.ops.eigenparts.create_armature()
-    return bpy.context.object
+    run_operator("create_armature")
+    return present(bpy.context.object)
 
 
 def _pose(armature: bpy.types.Object) -> None:
     """Raise one arm, bend the other, lift a knee, turn the head and lean: each by the bones that lie there."""
     for joint, degrees, axis in POSE:
-        posed = armature.pose.bones[_bone_at(armature, np.array(joint))]
+        posed = present(armature.pose).bones[_bone_at(armature, np.array(joint))]
         at_rest = posed.bone.matrix_local
-        pivot = Matrix.Translation(posed.bone.head_local)
+        pivot = Matrix.Translation(posed.bone.head_local.to_tuple())
         motion = pivot @ Matrix.Rotation(radians(degrees), 4, axis) @ pivot.inverted()
         posed.matrix_basis = at_rest.inverted() @ motion @ at_rest
 
 
-def _bone_at(armature: bpy.types.Object, place: np.ndarray) -> str:
+def _bone_at(armature: bpy.types.Object, place: Floats) -> str:
     """Return the bone that begins nearest to a place and leads away from the body."""
-    bones = [bone for bone in armature.data.bones if bone.parent and not bone.name.startswith("Root")]
-    return min(bones, key=lambda bone: np.linalg.norm(np.array(bone.head_local) - place)).name
+    bones = [
+        bone for bone in data_of(armature, bpy.types.Armature).bones if bone.parent and not bone.name.startswith("Root")
+    ]
+    return min(bones, key=lambda bone: float(np.linalg.norm(np.array(bone.head_local) - place))).name

@@ -7,8 +7,9 @@ import numpy as np
 from mathutils import Color
 from PIL import Image
 
-from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.operators.blender.known_values import elements_of, mesh_of, present, set_input
 from examples import handles, humanoid
+from tools.extension_operators import run_operator
 from tools.pictures.bones import bone_objects
 from tools.pictures.characters import add_mesh, analyze, level_of, segment, select, standing
 from tools.pictures.lettering import sheet
@@ -58,8 +59,7 @@ def draw_diagram(target: Path) -> None:
     """Write the persistence diagram as the operator draws it."""
     obj = _humanoid()
     select([obj])
-    with quiet():
-        bpy.ops.eigenparts.plot_diagram()
+    run_operator("plot_diagram")
     image = next(image for image in bpy.data.images if image.name.startswith("Diagram"))
     image.filepath_raw, image.file_format = str(target), "PNG"
     image.save()
@@ -73,8 +73,7 @@ def _humanoid(pose: str = "rest") -> bpy.types.Object:
 def _shown_complex(obj: bpy.types.Object, level: int, view: View) -> Image.Image:
     """Return a picture of an object in clay with its complex on it."""
     select([obj])
-    with quiet():
-        bpy.ops.eigenparts.trace_complex(level=level, thickness=THICKNESS)
+    run_operator("trace_complex", level=level, thickness=THICKNESS)
     body = add_copy(obj)
     image = shot([body, *obj.children], view)
     bpy.data.objects.remove(body)
@@ -85,12 +84,12 @@ def _shown_field(obj: bpy.types.Object, view: View) -> Image.Image:
     """Return a picture of the field in bands of equal height, so that their borders are level sets."""
     analyze(obj)
     select([obj])
-    with quiet():
-        bpy.ops.eigenparts.write_outputs(outputs={"CORNER_COLORS", "FIELD"})
-    values = np.empty(len(obj.data.vertices), dtype=np.float32)
-    obj.data.attributes["eigenparts_field"].data.foreach_get("value", values)
+    run_operator("write_outputs", outputs={"CORNER_COLORS", "FIELD"})
+    mesh = mesh_of(obj)
+    values = np.empty(len(mesh.vertices), dtype=np.float32)
+    elements_of(mesh.attributes["eigenparts_field"]).foreach_get("value", values)
     body = add_copy(obj)
-    body.data.materials.append(_banded("eigenparts_field", float(values.min()), float(values.max())))
+    mesh_of(body).materials.append(_banded("eigenparts_field", float(values.min()), float(values.max())))
     image = shot([body], view)
     bpy.data.objects.remove(body)
     return image
@@ -100,20 +99,20 @@ def _shown_parts_and_bones(obj: bpy.types.Object, view: View) -> list[Image.Imag
     segment(obj)
     images = [shot([obj], view)]
     select([obj])
-    with quiet():
-        bpy.ops.eigenparts.create_armature()
-    images.append(shot([obj], view, bone_objects(bpy.context.object)))
+    run_operator("create_armature")
+    images.append(shot([obj], view, bone_objects(present(bpy.context.object))))
     return images
 
 
 def add_copy(obj: bpy.types.Object) -> bpy.types.Object:
     """Add a copy of an object without the colours of its parts, in clay."""
-    copy = bpy.data.objects.new("Clay", obj.data.copy())
-    colours = copy.data.color_attributes
+    mesh = present(mesh_of(obj).copy())
+    copy = bpy.data.objects.new("Clay", mesh)
+    colours = mesh.color_attributes
     for attribute in list(colours):
         colours.remove(attribute)
-    copy.color = CLAY
-    bpy.context.collection.objects.link(copy)
+    copy.color.foreach_set(CLAY)
+    present(bpy.context.collection).objects.link(copy)
     return copy
 
 
@@ -122,18 +121,32 @@ def _banded(attribute: str, least: float, greatest: float) -> bpy.types.Material
     material = bpy.data.materials.new(f"{MATERIAL} bands")
     if material.node_tree is None:
         material.use_nodes = True
-    nodes, links = material.node_tree.nodes, material.node_tree.links
-    read, scaled, ramp = (nodes.new(f"ShaderNode{kind}") for kind in ("Attribute", "MapRange", "ValToRGB"))
-    read.attribute_name = attribute
-    scaled.inputs["From Min"].default_value, scaled.inputs["From Max"].default_value = least, greatest
-    _fill(ramp.color_ramp)
+    tree = present(material.node_tree)
+    nodes, links = tree.nodes, tree.links
+    read, scaled, ramp = _attribute_node(nodes, attribute), nodes.new("ShaderNodeMapRange"), _band_node(nodes)
+    set_input(scaled, "From Min", least)
+    set_input(scaled, "From Max", greatest)
     links.new(read.outputs["Fac"], scaled.inputs["Value"])
     links.new(scaled.outputs["Result"], ramp.inputs["Fac"])
     surface = nodes["Principled BSDF"]
-    surface.inputs["Roughness"].default_value = 0.55
-    surface.inputs["Specular IOR Level"].default_value = 0.25
+    set_input(surface, "Roughness", 0.55)
+    set_input(surface, "Specular IOR Level", 0.25)
     links.new(ramp.outputs["Color"], surface.inputs["Base Color"])
     return material
+
+
+def _attribute_node(nodes: bpy.types.Nodes, attribute: str) -> bpy.types.Node:
+    node = nodes.new("ShaderNodeAttribute")
+    assert isinstance(node, bpy.types.ShaderNodeAttribute)
+    node.attribute_name = attribute
+    return node
+
+
+def _band_node(nodes: bpy.types.Nodes) -> bpy.types.Node:
+    node = nodes.new("ShaderNodeValToRGB")
+    assert isinstance(node, bpy.types.ShaderNodeValToRGB)
+    _fill(present(node.color_ramp))
+    return node
 
 
 def _fill(ramp: bpy.types.ColorRamp) -> None:
@@ -143,7 +156,8 @@ def _fill(ramp: bpy.types.ColorRamp) -> None:
         ramp.elements.new(1.0)
     for number, (element, colour) in enumerate(zip(ramp.elements, BANDS, strict=True)):
         element.position = number / len(BANDS)
-        element.color = (*_linear(colour), 1.0)
+        linear = _linear(colour)
+        element.color.foreach_set((linear.r, linear.g, linear.b, 1.0))
 
 
 def _linear(colour: str) -> Color:

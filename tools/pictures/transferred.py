@@ -3,12 +3,16 @@
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.posed_families import read_mesh
-from compute import Correspondence, TriangleMesh, analyze, correspond
+from eigenparts.compute import Correspondence, TriangleMesh, analyze, correspond
+from eigenparts.compute.surface.mesh import Floats
+from eigenparts.operators.blender.known_values import mesh_of
 from examples import Character, humanoid
 from tools.pictures.characters import add_mesh, paint, paint_faces, standing
 from tools.pictures.lettering import sheet
@@ -20,6 +24,8 @@ POSES = {"rest": 10000, "walk": 7000, "sit": 12000, "reach": 8500}
 # Bones whose weights are shown together, and linear RGB of no and full weight.
 BONES = ("upper_arm.L", "upper_arm.R", "thigh.L", "thigh.R", "spine")
 NONE, FULL = np.array([0.6, 0.63, 0.68, 1.0]), np.array([0.7, 0.03, 0.03, 1.0])
+# Numbers of the vertices or faces of a mesh.
+Values = NDArray[Any]
 # Files in which y is up.
 Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 FOX, WOLF = "khronos-fox/fox_0_rest.off", "quaternius-animals/wolf_0_rest.off"
@@ -77,9 +83,9 @@ def _titles() -> list[str]:
     return [f"{pose}, {n_vertices:,} vertices" for pose, n_vertices in POSES.items()]
 
 
-def _paint_values(obj: bpy.types.Object, values: np.ndarray) -> None:
+def _paint_values(obj: bpy.types.Object, values: Floats) -> None:
     """Give an object the colours of values from 0 to 1 at its vertices."""
-    corners = np.array([face.vertices for face in obj.data.polygons]).ravel()
+    corners = np.array([face.vertices for face in mesh_of(obj).polygons]).ravel()
     share = np.clip(values[corners], 0, 1)[:, None]
     paint(obj, (1 - share) * NONE + share * FULL)
 
@@ -87,8 +93,8 @@ def _paint_values(obj: bpy.types.Object, values: np.ndarray) -> None:
 def _draw(
     target: Path,
     meshes: Sequence[TriangleMesh],
-    carried: Sequence[np.ndarray],
-    paint_object: Callable[[bpy.types.Object, np.ndarray], None],
+    carried: Sequence[Values],
+    paint_object: Callable[[bpy.types.Object, Values], None],
     titles: Sequence[str],
     view: View | None = None,
 ) -> None:

@@ -56,6 +56,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "Eigenfunction {} suits best: its parts hold {} of {} protrusions.": "Eigenfunktion {} passt am besten: ihre Teile halten {} von {} Vorsprüngen.",
     "The mesh has {} loose parts; {} of them were analyzed{}, the others follow what is next to them.": "Das Netz hat {} lose Teile; {} davon wurden analysiert{}, die anderen folgen dem, was neben ihnen liegt.",
     "The mesh has {} loose parts; {} of them were analyzed, each by itself, the others follow what is next to them.": "Das Netz hat {} lose Teile; {} davon wurden analysiert, jedes für sich, die anderen folgen dem, was neben ihnen liegt.",
+    "The mesh has {} loose parts; the eigenfunctions are those of the largest, and 0 on the others.": "Das Netz hat {} lose Teile; die Eigenfunktionen sind die des größten, und 0 auf den anderen.",
     "The loose parts have no features: each is one part.": "Die losen Teile haben keine Merkmale: jedes ist ein Teil.",
     "No loose part has enough faces to be divided by itself.": "Kein loses Teil hat genug Flächen, um für sich geteilt zu werden.",
     "The shape has no features: it is one part.": "Die Gestalt hat keine Merkmale: sie ist ein Teil.",

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
 from ...surface.mesh import Bools, Floats, Ints

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...surface.mesh import Bools, Floats, Ints
 from ..eigenfunctions.matching import Matching
 from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points

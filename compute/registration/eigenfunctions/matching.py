@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface

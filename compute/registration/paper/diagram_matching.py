@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
 from ...fem.eigenbasis import Eigenbasis
 from ...fields.scalar_field import refined_net

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...analysis import Analysis, analyze_part, segment_part
+from ...analysis.analysis import Analysis, analyze_part, segment_part
+from ...choices import FEATURES
 from ...progress import Progress, rising, silent
 from ...segmentation.parts.part_labels import Segmentation
 from .diagram_matching import DiagramMatching, PartPairs, match_diagrams, match_tips
@@ -89,7 +90,7 @@ def _can_be_divided(whole: Segmentation, label: int) -> bool:
 
 
 def _match_pieces(source: Analysis, target: Analysis, labels: tuple[int, int]) -> SubpartPairs:
-    parts = segment_part(source), segment_part(target)
+    parts = segment_part(source, FEATURES), segment_part(target, FEATURES)
     matching = match_diagrams(source, target)
     return SubpartPairs(
         of_source=labels[0],

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 
+from ...choices import FEATURES
 from ...segmentation.hierarchy.arc_tree import ArcTree
 from ...segmentation.hierarchy.levels import Hierarchy
-from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import BODY, Parts
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import evened

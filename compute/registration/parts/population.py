@@ -7,10 +7,10 @@ from functools import partial
 
 import numpy as np
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
+from ...choices import FEATURES
 from ...errors import RegistrationError
 from ...progress import Progress, rising, section, silent
-from ...segmentation.modes import FEATURES
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.point_map import point_map

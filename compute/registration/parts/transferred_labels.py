@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
-from ...analysis import Analysis
+from ...analysis.analysis import Analysis
 from ...segmentation.faces.branches import connected_branches, repaired_labels
 from ...segmentation.faces.face_graph import FaceGraph, face_graph
 from ...segmentation.faces.part_tree import PartTree
@@ -205,7 +205,14 @@ def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, targ
     parent[given.id] = given.parent
     area, count = sum_by(labels, target.graph.area, n), np.bincount(labels, minlength=n)
     ids = np.flatnonzero(count)
-    return Parts(ids, _present_parents(parent, count > 0)[ids], extremum[ids], saddle[ids], area[ids], count[ids])
+    return Parts(
+        id=ids,
+        parent=_present_parents(parent, count > 0)[ids],
+        extremum=extremum[ids],
+        saddle=saddle[ids],
+        area=area[ids],
+        n_triangles=count[ids],
+    )
 
 
 def _present_parents(parent: Ints, is_present: Bools) -> Ints:

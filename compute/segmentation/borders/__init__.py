@@ -1,1 +1,1 @@
-"""Where parts end: level sets across the triangles, or lines of existing edges. Imports hierarchy and faces."""
+"""Borders of parts: level sets across the triangles, or lines of existing edges. Imports hierarchy and faces."""

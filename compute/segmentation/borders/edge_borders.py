@@ -76,7 +76,7 @@ def _rim(band: Ints, ring: Ints, is_label: Bools) -> Ints:
 
 
 def _first_side(pairs: Ints, weight: Floats, rims: list[Ints]) -> Bools:
-    """Tell which places (n,) lie on the first rim's side of the least cut between two rims."""
+    """Mask (n,) of the places on the first rim's side of the least cut between two rims."""
     n = 1 + max(int(pairs.max()), *(int(rim.max()) for rim in rims))
     capacity = np.maximum(1, np.round(MEAN_CAPACITY * weight / weight.mean())).astype(np.int32)
     endless = np.full(sum(map(len, rims)), np.int32(capacity.sum() + 1))

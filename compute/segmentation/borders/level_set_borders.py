@@ -7,7 +7,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, depth_first_order
 
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh
-from ..hierarchy.arc_tree import ArcTree
+from ..hierarchy.arc_tree import NO_ARC, ArcTree
 from .edge_profile import EdgeProfile
 
 # A border that crosses an edge nearer to its end than this fraction of it goes through the vertex: no slivers.
@@ -16,7 +16,7 @@ SNAP = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Crossings:
-    """Where borders cross edges, one row each, sorted by edge and along it.
+    """Crossings of borders and edges, one row each, sorted by edge and along it.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Crossings:
     parameter : (n,) float64
         From 0 at the first vertex of the edge to 1 at the second.
     is_entry : (n,) bool
-        Whether the edge enters the part there, on its way from the first vertex to the second; it leaves it otherwise.
+        Whether the edge enters the part there, from the first vertex to the second; it leaves it otherwise.
     border : (n,) int64
         Which border it is; a border is the closed or open line around one cut-off part of one tree.
     arcs : (n, trees) int64
@@ -176,20 +176,20 @@ def _passages(profile: EdgeProfile, number: int, tree: ArcTree, heights: Floats,
     inner = np.where(cut > 0, np.arange(len(cut)), outward)
     edge = np.flatnonzero(~np.isnan(profile.heights).any(axis=1))
     ends = inner[profile.arcs[number][profile.edges[edge]]]
-    found = []
+    passed = []
     while True:
         differ = np.flatnonzero(ends[:, 0] != ends[:, 1])
         edge, ends = edge[differ], ends[differ]
         # A parent has a larger index than its children: of two different arcs the smaller one is left.
         is_entry = np.where(ends < 0, len(cut), ends).argmin(axis=1) == 1
         arc = np.where(is_entry, ends[:, 1], ends[:, 0])
-        found.append((edge, arc, is_entry))
+        passed.append((edge, arc, is_entry))
         if not len(edge):
             break
         ends = np.stack(
             [np.where(is_entry, ends[:, 0], outward[arc]), np.where(is_entry, outward[arc], ends[:, 1])], axis=1
         )
-    edge, arc, is_entry = (np.concatenate(column) for column in zip(*found, strict=True))
+    edge, arc, is_entry = (np.concatenate(column) for column in zip(*passed, strict=True))
     from_inside = np.where(is_entry[:, None], profile.heights[edge][:, ::-1], profile.heights[edge])
     share = _first_fall((from_inside - heights[arc, None]) * (1 if tree.is_of_maxima else -1))
     behind = np.where(is_entry, arc, tree.parent[arc])
@@ -197,16 +197,16 @@ def _passages(profile: EdgeProfile, number: int, tree: ArcTree, heights: Floats,
 
 
 def _nearest_cut(parent: Ints, is_cut: Bools) -> Ints:
-    """Return for each arc the nearest cut one on its way to the root, itself left out; -1 if there is none."""
-    nearest = np.full(len(parent), -1)
+    """Return for each arc the nearest cut one towards the root, itself left out; ``NO_ARC`` if there is none."""
+    nearest = np.full(len(parent), NO_ARC)
     for arc in range(len(parent) - 1, -1, -1):
-        if parent[arc] >= 0:
+        if parent[arc] != NO_ARC:
             nearest[arc] = parent[arc] if is_cut[parent[arc]] else nearest[parent[arc]]
     return nearest
 
 
 def _first_fall(heights: Floats) -> Floats:
-    """Return the fraction (n,) of the way at which piecewise linear heights (n, m) first fall to zero."""
+    """Return the fraction (n,) of each row at which piecewise linear heights (n, m) first fall to zero."""
     above = heights > 0
     falls = above[:, :-1] & ~above[:, 1:]
     first = falls.argmax(axis=1)

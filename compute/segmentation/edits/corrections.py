@@ -1,4 +1,4 @@
-"""What a person changed by hand, on top of any level: kept apart from the levels, applied in the order it was made.
+"""Changes by hand on top of any level: kept apart from the levels, applied in the order they were made.
 
 A correction names parts by their numbers, which a part has at every level; where a level does not have them the
 correction rests.
@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...choices import NESTED
 from ...surface.mesh import Floats, Ints
 from ...surface.ties import first_largest
 from ..faces.branches import Branches, repaired_labels
@@ -55,7 +56,7 @@ class Correction:
     other: int = 0
     value: float = 0.0
     level: int = 0
-    mode: str = "nested"
+    mode: str = NESTED
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,9 +130,9 @@ def touching(of_branch: Ints, branches: Branches, part: int) -> dict[int, float]
     """Return the length of the border with each part that a part touches."""
     ends = of_branch[branches.borders]
     lengths: dict[int, float] = {}
-    for here, there in (ends.T, ends[:, ::-1].T):
-        outward = (here == part) & (there != part)
-        for other, length in zip(there[outward].tolist(), branches.border_length[outward].tolist(), strict=True):
+    for inner, outer in (ends.T, ends[:, ::-1].T):
+        outward = (inner == part) & (outer != part)
+        for other, length in zip(outer[outward].tolist(), branches.border_length[outward].tolist(), strict=True):
             lengths[other] = lengths.get(other, 0.0) + length
     return lengths
 
@@ -149,9 +150,9 @@ def _merge(labelling: Labelling, branches: Branches, item: Correction, _: Ints |
 
 
 def _split(labelling: Labelling, branches: Branches, item: Correction, side: Ints) -> Labelling | None:
-    own = labelling.of_branch == item.part
-    beyond = own & (side == BEYOND)
-    if not beyond.any() or not (own & ~beyond).any():
+    is_inside = labelling.of_branch == item.part
+    beyond = is_inside & (side == BEYOND)
+    if not beyond.any() or not (is_inside & ~beyond).any():
         return None
     of_branch = np.where(beyond, item.other, labelling.of_branch)
     parent = labelling.parent.copy()

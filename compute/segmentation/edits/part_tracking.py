@@ -56,7 +56,7 @@ def carried(items: tuple[Correction, ...], old: PartTree, new: PartTree, area: F
     area : (F,) float64
         Of its faces.
     """
-    found = {0: (0, 0)}
+    tracked = {0: (0, 0)}
     first_own = first_own_part(old.trees[0])
     shift = first_own_part(new.trees[0]) - first_own
     for mode in sorted({item.mode for item in items}):
@@ -66,27 +66,27 @@ def carried(items: tuple[Correction, ...], old: PartTree, new: PartTree, area: F
                 continue
             for part in _mentioned(item):
                 if part >= first_own:
-                    found[part] = (part + shift, item.level)
-                elif part not in found:
+                    tracked[part] = (part + shift, item.level)
+                elif part not in tracked:
                     same = _same_part(_inside(old, part, item, items), new, area, candidates)
-                    found |= {} if same is None else {part: same}
-    return found
+                    tracked |= {} if same is None else {part: same}
+    return tracked
 
 
 def renumbered(
-    items: tuple[Correction, ...], found: dict[int, tuple[int, int]], old: Hierarchy, new: Hierarchy
+    items: tuple[Correction, ...], tracked: dict[int, tuple[int, int]], old: Hierarchy, new: Hierarchy
 ) -> tuple[Correction, ...]:
     """Return the corrections whose parts were all found, with their new numbers and levels."""
     return tuple(
         replace(
             item,
-            part=found[item.part][0],
-            other=found[item.other][0] if item.kind in (MERGE, SPLIT) else item.other,
+            part=tracked[item.part][0],
+            other=tracked[item.other][0] if item.kind in (MERGE, SPLIT) else item.other,
             value=same_level(int(item.value), old, new) if item.kind == LEVEL else item.value,
-            level=found[item.part][1] or item.level,
+            level=tracked[item.part][1] or item.level,
         )
         for item in items
-        if all(part in found for part in _mentioned(item))
+        if all(part in tracked for part in _mentioned(item))
     )
 
 
@@ -118,12 +118,12 @@ def _candidates(new: PartTree, mode: str) -> dict[tuple[int, int], tuple[int, in
     n_levels, default_level = new.hierarchy.n_levels, new.hierarchy.default_level
     # The default level first, as its numbers are those that are seen first.
     levels = [default_level, *range(1, min(n_levels, MOST_LEVELS)), n_levels - 1]
-    found: dict[tuple[int, int], tuple[int, int]] = {}
+    candidates: dict[tuple[int, int], tuple[int, int]] = {}
     for level in dict.fromkeys(levels):
         for tree, cut in enumerate(new.cut_arcs(level, mode)):
             for arc in np.flatnonzero(cut).tolist():
-                found.setdefault((tree, arc), (int(cut[arc]), level))
-    return found
+                candidates.setdefault((tree, arc), (int(cut[arc]), level))
+    return candidates
 
 
 def _same_part(
@@ -146,10 +146,10 @@ def _same_part(
     return best
 
 
-def carried_painting(painted: Ints, items: tuple[Correction, ...], found: dict[int, tuple[int, int]]) -> Ints:
+def carried_painting(painted: Ints, items: tuple[Correction, ...], tracked: dict[int, tuple[int, int]]) -> Ints:
     """Return the parts (F,) that faces were painted with, by their new numbers; -1 elsewhere."""
     kept = np.full(len(painted), -1)
     for item in items:
-        if item.kind == PAINT and item.part in found:
-            kept[painted == item.part] = found[item.part][0]
+        if item.kind == PAINT and item.part in tracked:
+            kept[painted == item.part] = tracked[item.part][0]
     return kept

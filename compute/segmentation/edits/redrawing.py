@@ -75,7 +75,7 @@ def undivided(part_tree: PartTree, items: tuple[Correction, ...]) -> Corrections
 
 
 def needs_faces(items: tuple[Correction, ...]) -> bool:
-    """Whether branches have to be divided for some corrections."""
+    """Return whether branches have to be divided for some corrections."""
     return any(item.kind in (SPLIT, MOVE, PAINT) for item in items)
 
 

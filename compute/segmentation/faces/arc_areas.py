@@ -1,4 +1,4 @@
-"""How much of every face lies on which arc, by cutting the net's triangles along the level sets of the saddles."""
+"""Shares of the faces on the arcs, by cutting the net's triangles along the level sets of the saddles."""
 
 from dataclasses import dataclass
 
@@ -38,7 +38,7 @@ def arc_areas(values: Floats, arc: Ints, tree: ArcTree, net: Net, face: Ints) ->
     Parameters
     ----------
     values : (n,) float64
-        The function, rising in the direction of the sweep.
+        The field.
     arc : (n,) int64
         Arc of each net vertex.
     tree : ArcTree
@@ -47,18 +47,19 @@ def arc_areas(values: Floats, arc: Ints, tree: ArcTree, net: Net, face: Ints) ->
     face : (m,) int64
         The face each triangle of the net belongs to.
     """
-    heights = np.sort(values[net.triangles], axis=1)
+    rising = -values if tree.is_of_maxima else values
+    heights = np.sort(rising[net.triangles], axis=1)
     arcs = arc[net.triangles]
     # A parent has a larger index than its children, so along a path the index tells the order.
     first, last = arcs.min(axis=1), arcs.max(axis=1)
     inside = first == last
     rows = [(face[inside], first[inside], net.areas[inside])]
     crossing = np.flatnonzero(~inside)
-    here, below = first[crossing], np.zeros(len(crossing))
+    current, below = first[crossing], np.zeros(len(crossing))
     while len(crossing):
-        is_last = here == last[crossing]
-        level = np.where(is_last, np.inf, values[tree.saddle[here]])
+        is_last = current == last[crossing]
+        level = np.where(is_last, np.inf, rising[tree.saddle[current]])
         reached = np.maximum(share_below(heights[crossing], level), below)
-        rows.append((face[crossing], here, net.areas[crossing] * (reached - below)))
-        crossing, here, below = crossing[~is_last], tree.parent[here[~is_last]], reached[~is_last]
+        rows.append((face[crossing], current, net.areas[crossing] * (reached - below)))
+        crossing, current, below = crossing[~is_last], tree.parent[current[~is_last]], reached[~is_last]
     return ArcAreas(*(np.concatenate(column) for column in zip(*rows, strict=True)))

@@ -17,7 +17,7 @@ class FaceGraph:
     area : (F,) float64
         Area of each face.
     stands_for : (F,) int64
-        The analyzed face whose fate each face shares: itself, or the nearest one if it is not analyzed.
+        The analyzed face whose label each face takes: itself, or the nearest one if it is not analyzed.
     neighbours : (P, 2) int64
         Pairs of analyzed faces that share edges.
     length : (P,) float64

@@ -5,13 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
+from ...choices import FEATURES, NESTED
 from ...surface.mesh import Bools, Floats, Ints, sum_by
 from ...surface.ties import ROUNDING
 from ..hierarchy.arc_measures import ArcMeasures
 from ..hierarchy.arc_tree import ArcTree
 from ..hierarchy.levels import Hierarchy
 from ..hierarchy.nesting import nested_cuts, numbered
-from ..modes import FEATURES, NESTED
 from .branches import Branches
 
 
@@ -44,7 +44,7 @@ class PartTree:
 
     @property
     def n_faces(self) -> int:
-        """How many faces there are."""
+        """Number of faces, F."""
         return len(self.branches[0].of_face)
 
     @property

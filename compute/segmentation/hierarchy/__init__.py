@@ -1,1 +1,1 @@
-"""Arc trees and levels: which features there are, in which order and how they are nested. Imports msc."""
+"""Arc trees and levels: the features, their order, and how they are nested. Imports msc."""

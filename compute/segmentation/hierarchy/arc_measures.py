@@ -23,7 +23,8 @@ class ArcMeasures:
     Attributes
     ----------
     height : (A,) float64
-        Difference of the field between the two ends of the arc, as a fraction of its range; 0 for roots.
+        Difference of the field between the two ends of the arc, as a fraction of its range; 0 where it closes at no
+        saddle.
     closing_length, longest : (A,) float64
         Length of the level set where the arc closes and at its longest inside; 0 where it was not worth measuring.
     roundness : (A,) float64

@@ -40,11 +40,11 @@ class ArcTree:
     extremum : (A,) int64
         That leaf, a net vertex.
     saddle : (A,) int64
-        Net vertex at which the arc closes; ``NO_SADDLE`` for roots and whole shells.
+        Net vertex at which the arc closes; ``NO_SADDLE`` for whole shells and for roots, each shell's own included.
     closing : (A,) int64
         The place of that saddle's pair by falling persistence, the first of them if it has several: the saddle
         survives at all levels above. ``ALWAYS`` for saddles without a pair and for whole shells, which survive at every
-        level, and ``NEVER`` for roots.
+        level, and ``NEVER`` for roots, each shell's own included.
     """
 
     is_of_maxima: bool
@@ -81,7 +81,7 @@ class ArcTree:
 
     @property
     def is_root(self) -> Bools:
-        """Mask (A,) of the arcs that are not closed."""
+        """Mask (A,) of the arcs that nothing goes on behind."""
         return self.parent == NO_ARC
 
     @property

@@ -1,4 +1,4 @@
-"""Which eigenfunction suits a shape: the one whose parts hold the protrusions one by one."""
+"""The eigenfunction that suits a shape: its parts hold the protrusions one by one."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ JUDGED_FUNCTIONS = 8
 
 @dataclass(frozen=True)
 class FunctionHint:
-    """How an eigenfunction divides a shape at its default level.
+    """The division of a shape by an eigenfunction at its default level.
 
     Attributes
     ----------

@@ -7,13 +7,13 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ...choices import MODES, NESTED
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
 from ..borders.level_set_borders import Polyline
 from ..edits.corrections import LEVEL, Corrections, Labelling, corrected
 from ..faces.branches import Branches, repaired_labels
 from ..faces.part_tree import PartTree
-from ..modes import MODES, NESTED
 
 BODY = 0
 
@@ -85,6 +85,13 @@ class Segmentation:
     level : int
     warnings : tuple of str
         Sentences for the user, such as that a number of parts could not be reached.
+
+    Examples
+    --------
+    >>> segmentation = analysis.segment()
+    >>> areas = dict(zip(segmentation.parts.id.tolist(), segmentation.parts.area.round(1).tolist()))
+    >>> len(areas) == segmentation.n_parts
+    True
     """
 
     labels: NDArray[np.int32]

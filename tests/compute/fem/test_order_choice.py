@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from compute.analysis import analyze
+from compute.analysis.analyze import analyze
 from compute.errors import MeshError
 from compute.fem import order_choice
 from compute.fem.eigenbasis import solve_eigenbasis

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from compute.analysis import Analysis, analyze
+from compute.analysis.analysis import Analysis
+from compute.analysis.analyze import analyze
 from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere
 

@@ -5,7 +5,7 @@ import pytest
 
 from compute.registration.dense.isomorphism import isomorphism, may_be_isomorphic
 from tests.compute.registration.shapes import shuffled
-from tests.shapes import icosphere, rectangle, torus
+from tests.shapes import icosphere, joined, rectangle, torus
 
 
 @pytest.mark.parametrize("mesh", [icosphere(2), torus(), rectangle(5, 3)], ids=["sphere", "torus", "sheet"])
@@ -40,3 +40,9 @@ def test_faces_of_which_one_edge_is_turned_are_no_isomorphism():
 def test_vertices_without_triangles_are_nothing():
     mesh = icosphere(0)
     assert isomorphism(mesh.triangles, mesh.triangles, 14, 14, np.arange(14)).tolist() == [*range(12), -1, -1]
+
+
+def test_one_of_two_loose_parts_is_not_enough():
+    both = joined(icosphere(1), torus())
+    n = len(both.vertices)
+    assert isomorphism(both.triangles, both.triangles, n, n, np.arange(n)) is None

@@ -35,11 +35,11 @@ def test_functions_that_were_flipped_and_switched_are_found(spectrum):
     np.testing.assert_allclose(find_hypotheses(spectrum, target, QUICK).maps[0], change[:8, :8], atol=0.05)
 
 
-def test_a_given_sign_is_begun_with(spectrum):
-    """Against what fits best: so no hypothesis is the identity."""
-    found = find_hypotheses(spectrum, spectrum, Effort(levels=(6,), beam_width=50), {2: -1})
-    assert found.total[0] < 2 - 1e-3 or found.maps[0, 2, 2] == pytest.approx(1, abs=1e-3)
-    assert len(find_hypotheses(spectrum, spectrum, QUICK).best(2)) == 2
+def test_the_search_begins_with_given_signs(spectrum):
+    """The right ones fit exactly; with all of them wrong nothing does."""
+    right, wrong = (find_hypotheses(spectrum, spectrum, QUICK, dict.fromkeys(range(6), sign)) for sign in (1, -1))
+    assert right.total[0] == pytest.approx(2)
+    assert wrong.total[0] < 1.95
 
 
 def test_the_nearest_orthogonal_matrix_undoes_a_stretch():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compute.analysis import analyze
+from compute.analysis.analyze import analyze
 from compute.errors import Cancelled, RegistrationError
 from compute.registration.eigenfunctions.matching import match, match_shapes
 from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compute.analysis import Analysis, analyze
+from compute.analysis.analysis import Analysis
+from compute.analysis.analyze import analyze
 from compute.errors import RegistrationError
 from compute.registration.paper.diagram_matching import match_diagrams, match_tips, separated_points
 from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, moved, shuffled

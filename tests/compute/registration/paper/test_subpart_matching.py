@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from compute.analysis import analyze
+from compute.analysis.analyze import analyze
 from compute.errors import Cancelled
 from compute.registration.paper.diagram_matching import PartPairs, match_diagrams, match_tips
 from compute.registration.paper.subpart_matching import match_subparts

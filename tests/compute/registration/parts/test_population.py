@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from compute.analysis import Analysis, analyze
+from compute.analysis.analysis import Analysis
+from compute.analysis.analyze import analyze
 from compute.errors import RegistrationError
 from compute.registration.parts.part_matching import with_first_free
 from compute.registration.parts.population import register

@@ -23,7 +23,7 @@ def given(shape):
 
 
 def no_cuts(shape):
-    return [np.zeros(len(tree.parent), dtype=np.int64) for tree in shape.hierarchy.trees]
+    return [np.zeros(len(tree.parent), dtype=np.int64) for tree in shape.part_tree.hierarchy.trees]
 
 
 def test_shares_around_a_point_sum_to_one(given, shape):

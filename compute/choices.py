@@ -1,0 +1,16 @@
+"""The words that an analysis and a division can be asked for by, the default first; importing them loads nothing."""
+
+# What lies between features is a part too: all levels up to the chosen one are overlaid.
+NESTED = "nested"
+# Only the features that protrude are parts.
+FEATURES = "features"
+MODES = (NESTED, FEATURES)
+# What is done with a mesh of several shells: those that prolong the largest are bridged to it, only the largest is
+# analyzed, or each that is no detail by itself.
+SHELLS = ("bridged", "largest", "separate")
+# Degrees of the finite elements; by the size of the mesh if "auto".
+ORDERS: tuple[str | int, ...] = ("auto", 1, 2, 3)
+# How functions behave at open edges: they meet them at a right angle, or are zero there.
+BOUNDARIES = ("neumann", "dirichlet")
+# Functions that the engine itself can be asked for by name; otherwise the number of an eigenfunction, or own values.
+FIELDS = ("diffusion",)

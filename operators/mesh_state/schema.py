@@ -1,0 +1,62 @@
+"""Names, version and limits of what is stored on a mesh, and what is said where it cannot be used."""
+
+from __future__ import annotations
+
+from ..mesh_data.mesh_arrays import OwnAttribute
+
+# 2: with corrections by hand, which a state of version 1 has none of.
+SCHEMA = 2
+
+# Of the analysis. Trees, branches and closing heights stand once for each merge tree, with its number behind the name.
+VERSION, FINGERPRINT, DESCRIPTION, SHELLS = "schema", "fingerprint", "description", "shells"
+HIERARCHY, TREE, PIECES_OF_TREE, CLOSING_HEIGHTS = "hierarchy", "tree_{}", "branches_{}", "closing_heights_{}"
+INSIDE_EDGES = "n_inside_edge"
+# Of the division that is shown, and of the outputs it is written to: one name a line.
+LEVEL, MODE, PARTS, OUTPUTS, SOFTNESS = "level", "mode", "parts", "outputs", "softness"
+# Of the parts, each a group keyed by their numbers.
+PART_NUMBERS, PART_NAMES, PART_COLOURS = "part_numbers", "part_names", "part_colours"
+PART_TABLES = (PART_NUMBERS, PART_NAMES, PART_COLOURS)
+# Of the corrections by hand; branches that were redrawn for them are there only while they are needed.
+CORRECTIONS, REDRAWN = "corrections", "pieces"
+# There only while the mesh shows the parts of another.
+REGISTRATION = "registration"
+# For each judged function, the best first, its number and how many protrusions its parts hold.
+FUNCTION_HINTS = "function_hints"
+# For each part that has a side, the part both sides are called after, and +1 for left, -1 for right.
+PART_SIDES = "part_sides"
+# The bones of the last skeleton of a mesh, told by its parts, as JSON.
+BONE_LAYOUT = "bone_layout"
+
+# What outlives a new analysis: choices of the user, and what is known of the parts as long as they are the same.
+CHOICES = (MODE, OUTPUTS, SOFTNESS)
+OF_PARTS = (*PART_TABLES, REGISTRATION)
+
+# One attribute for each merge tree; the second is there only where minima are features too.
+BRANCHES = (
+    OwnAttribute("eigenparts_branch", "INT", "FACE"),
+    OwnAttribute("eigenparts_branch_minima", "INT", "FACE"),
+)
+# What borders are cut from: the arc of each vertex in each tree, and the field on vertices and inside edges. The names
+# begin with a dot, so that Blender leaves them out of its lists.
+ARCS = (
+    OwnAttribute(".eigenparts_arc", "INT", "POINT"),
+    OwnAttribute(".eigenparts_arc_minima", "INT", "POINT"),
+)
+HEIGHT = OwnAttribute(".eigenparts_height", "FLOAT", "POINT")
+EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vector")
+# The part each face was painted with and one more, so that 0 is none.
+PAINTED = OwnAttribute("eigenparts_painted", "INT", "FACE")
+# The branches divided as corrections need them; the attribute is there only while some do.
+PIECE = OwnAttribute(".eigenparts_piece", "INT", "FACE")
+ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, PAINTED, PIECE)
+
+# More than any mesh has, so that a damaged number makes no table that fills the memory.
+MOST_LABELS = 1 << 22
+LONGEST_DESCRIPTION = 200
+
+NEWER = "This mesh was analyzed by a newer version of Eigenparts; update the extension or analyze the mesh again."
+CUT = "The borders of this mesh were cut already; analyze it again to cut it at another level."
+CHANGED = "The mesh was changed after it was analyzed; analyze it again."
+DAMAGED = "The analysis stored on this mesh is damaged; analyze it again."
+ABSENT = "Analyze the mesh first."
+LOST = "The parts that some corrections by hand belong to are not found any more; these corrections were removed."

@@ -1,0 +1,183 @@
+"""The analysis of a mesh as it is stored: trees and tables as plain numbers, what belongs to faces as attributes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import zip_longest
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import compute
+from ..mesh_data.attribute_values import Values
+from ..mesh_data.mesh_arrays import OwnAttribute, read_edges, read_own_floats, read_own_integers
+from ..messages.user_errors import Refusal
+from .schema import (
+    ARCS,
+    BRANCHES,
+    CLOSING_HEIGHTS,
+    CUT,
+    DAMAGED,
+    EDGE_HEIGHTS,
+    HEIGHT,
+    HIERARCHY,
+    INSIDE_EDGES,
+    PIECES_OF_TREE,
+    TREE,
+)
+from .serialization import UNREADABLE, packed, packed_array, unpacked, unpacked_array
+from .validation import is_sound, lie_within
+
+
+@dataclass(frozen=True, eq=False)
+class StoredAnalysis:
+    """All that levels are read from.
+
+    Attributes
+    ----------
+    part_tree : PartTree
+        Without the pairs that are noise.
+    shells : str
+        What was done with loose parts, one of ``compute.SHELLS``.
+    corrections : Corrections, optional
+        What was changed by hand; it refers to the branches of this tree.
+    """
+
+    part_tree: compute.PartTree
+    shells: str
+    corrections: compute.Corrections | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class BorderSource:
+    """The heights and arcs that the borders of every level are cut from.
+
+    Attributes
+    ----------
+    profile : EdgeProfile
+        Of the edges of the mesh.
+    vertex_heights : (V,) float64
+    """
+
+    profile: compute.EdgeProfile
+    vertex_heights: NDArray[np.float64]
+
+
+def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
+    """Return the tables of a part tree as groups of the state; the measures of arcs stand beside their tree."""
+    hierarchy = part_tree.hierarchy
+    arcs = enumerate(zip(hierarchy.trees, part_tree.measures, strict=True))
+    closing = enumerate(part_tree.closing_heights)
+    return {
+        HIERARCHY: packed(hierarchy, _features(hierarchy)),
+        **{TREE.format(i): packed(tree) | packed(measures) for i, (tree, measures) in arcs},
+        **{CLOSING_HEIGHTS.format(i): packed_array(heights) for i, heights in closing},
+        **packed_branches(part_tree.branches),
+    }
+
+
+def packed_branches(branches: tuple[compute.Branches, ...]) -> dict[str, Any]:
+    """Return the tables of branches as groups."""
+    return {PIECES_OF_TREE.format(i): packed(pieces) for i, pieces in enumerate(branches)}
+
+
+def packed_source(source: BorderSource) -> dict[str, Any]:
+    """Return the values of the state that belong to the attributes of a source of borders."""
+    return {INSIDE_EDGES: source.profile.heights[:, 1:-1].shape[1]}
+
+
+def branch_attributes(branches: tuple[compute.Branches, ...]) -> dict[OwnAttribute, Values | None]:
+    """Return the branch of each face, for each tree that there can be; None for one that is not there."""
+    of_faces = [pieces.of_face for pieces in branches]
+    return dict(zip_longest(BRANCHES, of_faces))
+
+
+def source_attributes(source: BorderSource) -> dict[OwnAttribute, Values | None]:
+    """Return the attributes that borders are cut from; None for those of a tree that is not there."""
+    inside = np.nan_to_num(source.profile.heights[:, 1:-1])
+    return {
+        **dict(zip_longest(ARCS, source.profile.arcs)),
+        HEIGHT: source.vertex_heights.astype(np.float32),
+        EDGE_HEIGHTS: np.pad(inside, ((0, 0), (0, 2 - inside.shape[1]))).astype(np.float32),
+    }
+
+
+def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAnalysis:
+    """Return the analysis in a state; raises a Refusal if it is damaged."""
+    try:
+        part_tree = _unpacked_tree(mesh, group)
+    except UNREADABLE as error:
+        raise Refusal(DAMAGED) from error
+    if not is_sound(part_tree):
+        raise Refusal(DAMAGED)
+    return StoredAnalysis(part_tree, shells)
+
+
+def unpacked_branches(group: Any, of_faces: list[NDArray[np.int32]]) -> tuple[compute.Branches, ...]:
+    """Return the branches in a group, with those of the faces for each tree."""
+    return tuple(
+        compute.Branches(of_face=of_face, **unpacked(group[PIECES_OF_TREE.format(i)], compute.Branches))
+        for i, of_face in enumerate(of_faces)
+    )
+
+
+def unpacked_source(mesh: bpy.types.Mesh, group: Any, part_tree: compute.PartTree) -> BorderSource:
+    """Return what the borders of a part tree are cut from; raises a Refusal if it is damaged, or they were cut."""
+    try:
+        n_inside = min(2, max(0, int(group[INSIDE_EDGES])))
+    except UNREADABLE as error:
+        raise Refusal(DAMAGED) from error
+    if ARCS[0].name not in mesh.attributes:
+        raise Refusal(CUT)
+    edges, heights = read_edges(mesh), vertex_heights(mesh)
+    inside = read_own_floats(mesh, EDGE_HEIGHTS, 2).reshape(-1, 2)[:, :n_inside].astype(np.float64)
+    along = np.column_stack([heights[edges[:, 0]], inside, heights[edges[:, 1]]])
+    arcs = tuple(read_own_integers(mesh, attribute) for attribute, _ in zip(ARCS, part_tree.trees, strict=False))
+    if not all(lie_within(arc, -1, len(values)) for arc, values in zip(arcs, part_tree.closing_heights, strict=True)):
+        raise Refusal(DAMAGED)
+    along[(arcs[0][edges] < 0).any(axis=1)] = np.nan
+    return BorderSource(compute.EdgeProfile(edges, along, arcs), heights)
+
+
+def has_trees(group: Any, hierarchy: compute.Hierarchy) -> bool:
+    """Whether a state has the parts of a hierarchy, under the same numbers."""
+    try:
+        return all(
+            np.array_equal(unpacked_array(group[TREE.format(i)][column], "int64"), getattr(tree, column))
+            for i, tree in enumerate(hierarchy.trees)
+            for column in ("part", "extremum")
+        )
+    except UNREADABLE:
+        return False
+
+
+def vertex_heights(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
+    """Return the (V,) values of the field on the vertices."""
+    return read_own_floats(mesh, HEIGHT).astype(np.float64)
+
+
+def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
+    n_trees = 2 if TREE.format(1) in group else 1
+    tables = [group[TREE.format(i)] for i in range(n_trees)]
+    trees = tuple(compute.ArcTree(**unpacked(table, compute.ArcTree)) for table in tables)
+    return compute.PartTree(
+        hierarchy=compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees),
+        measures=tuple(compute.ArcMeasures(**unpacked(table, compute.ArcMeasures)) for table in tables),
+        closing_heights=tuple(_unpacked_closing_heights(group, i, tree) for i, tree in enumerate(trees)),
+        branches=unpacked_branches(group, [read_own_integers(mesh, attribute) for attribute in BRANCHES[:n_trees]]),
+    )
+
+
+def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> NDArray[np.float64]:
+    """Return the (A,) values of the field at which arcs close; only a root and whole shells close nowhere."""
+    heights = unpacked_array(group[CLOSING_HEIGHTS.format(number)], "float64")
+    if heights.shape != tree.saddle.shape or not np.isfinite(heights[tree.saddle >= 0]).all():
+        raise ValueError("closing heights")
+    return heights
+
+
+def _features(hierarchy: compute.Hierarchy) -> slice:
+    """Return where the pairs that are no noise stand."""
+    return slice(len(hierarchy.pairs) - (hierarchy.n_levels - 1), None)

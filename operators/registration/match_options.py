@@ -1,0 +1,33 @@
+"""Options of a matching: signs, alternative and mirror image, as the user asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ..mesh_state.registration_record import Match
+
+
+@dataclass(frozen=True)
+class MatchOptions:
+    """Options of a matching.
+
+    Attributes
+    ----------
+    flips : mapping of int to +1 or -1
+        The signs of some of the reference's functions, from 1.
+    alternative : int
+        0 for the best matching.
+    mirrored : bool
+        Match the mirror image of the reference.
+    """
+
+    flips: Mapping[int, int] = field(default_factory=dict)
+    alternative: int = 0
+    mirrored: bool = False
+
+
+def remembered_options(match: Match) -> MatchOptions:
+    """Return the options that a mesh was registered with."""
+    flips = {int(number): sign for number, sign in match.flips.items()}
+    return MatchOptions(flips, match.alternative, match.mirrored)

@@ -1,0 +1,296 @@
+"""Shapes matched with a reference and divided into its parts; knows nothing of Blender, so any thread may do it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ... import compute
+from ..jobs import recent_analyses
+from ..jobs.recent_results import Recent, key_of
+from ..mesh_state.stored_analysis import StoredAnalysis
+from ..messages.user_errors import Refusal, in_name_of
+from ..outputs.level_choice import LevelChoice
+from ..parts.analysis_settings import AnalysisInput
+from ..parts.mesh_segmentation import AnalysisResult, result_of
+from .match_options import MatchOptions
+
+CORRECTED_BEFORE = (
+    "{} was corrected by hand, and then edited, cut or analyzed with other settings; "
+    "analyze it with these settings first, so that all get its corrections."
+)
+
+# Of shapes that are kept: points, 1 kB of memory each. Of matchings: how many.
+RECENT_POINTS = 100_000
+RECENT_MATCHINGS = 32
+# How much of the time of preparing a mesh its analysis takes, and of registering one its matching.
+ANALYSIS_SHARE = 0.6
+MATCHING_SHARE = 0.7
+
+_recent_shapes: Recent[MatchableShape] = Recent(RECENT_POINTS)
+_recent_matchings: Recent[compute.Matching] = Recent(RECENT_MATCHINGS)
+
+
+@dataclass(frozen=True, eq=False)
+class ShownParts:
+    """The parts that a reference is to show.
+
+    Attributes
+    ----------
+    mode : str
+        How levels are read.
+    choice : LevelChoice
+        One of ``level``, ``threshold`` and ``n_parts``; the level that the mesh shows if empty.
+    level : int or None
+        The level that it shows, None if it shows none.
+    analysis : StoredAnalysis or None
+        The one that it shows, with what was corrected.
+    """
+
+    mode: str
+    choice: LevelChoice
+    level: int | None = None
+    analysis: StoredAnalysis | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MatchableShape:
+    """An analyzed mesh, ready to be matched.
+
+    Attributes
+    ----------
+    key : str
+        Equal for equal meshes and options.
+    shape : Divisible
+    result : AnalysisResult
+    """
+
+    key: str
+    shape: compute.Divisible
+    result: AnalysisResult
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedReference:
+    """The mesh whose parts all others get.
+
+    Attributes
+    ----------
+    name : str
+        Of the object.
+    key : str
+        Equal for equal meshes and options.
+    result : AnalysisResult
+    level : int
+    mode : str
+    matched : Reference
+        Its shape and parts, as others are matched with them.
+    """
+
+    name: str
+    key: str
+    result: AnalysisResult
+    level: int
+    mode: str
+    matched: compute.Reference
+
+    @property
+    def highest_label(self) -> int:
+        """The last of the labels that all share."""
+        return self.matched.parts.given.highest
+
+
+@dataclass(frozen=True, eq=False)
+class RegisteredShape:
+    """A mesh divided into the parts of a reference.
+
+    Attributes
+    ----------
+    name : str
+        Of the object.
+    result : AnalysisResult
+    labels : FaceLabels
+        The parts of the reference on the faces of this mesh.
+    matching : Matching
+    alternative, n_alternatives : int
+    by_diagrams : tuple of int
+        What persistence diagrams alone say of the reference's first functions: the number of the function that each is
+        here, negative where negated; 0 where they do not tell the sign.
+    """
+
+    name: str
+    result: AnalysisResult
+    labels: compute.FaceLabels
+    matching: compute.Matching
+    alternative: int
+    n_alternatives: int
+    by_diagrams: tuple[int, ...]
+
+    @property
+    def highest_label(self) -> int:
+        """The last label, of a part of the reference or of its own."""
+        return int(self.labels.parts.id.max())
+
+
+@dataclass(frozen=True, eq=False)
+class Registration:
+    """A reference with all that were registered to it."""
+
+    reference: PreparedReference
+    shapes: tuple[RegisteredShape, ...]
+
+
+def register_all(
+    reference: AnalysisInput,
+    shown: ShownParts,
+    targets: list[AnalysisInput],
+    options: MatchOptions,
+    first_free: int,
+    progress: compute.Progress,
+) -> Registration:
+    """Analyze all meshes and divide the targets into the parts of the reference; what is known is used again.
+
+    Parameters
+    ----------
+    first_free : int
+        The least label for parts without a partner on the reference.
+    """
+    n_steps = 2 * len(targets) + 1
+    # All are analyzed first: what cannot be is told before the longer part begins.
+    source, *others = (
+        _recall_shape(given, _step(progress, k, n_steps)) for k, given in enumerate((reference, *targets))
+    )
+    prepared = prepare_reference(reference.name, source, shown)
+    first_free = max(first_free, prepared.highest_label + 1)
+    shapes: list[RegisteredShape] = []
+    for number, (given, target) in enumerate(zip(targets, others, strict=True)):
+        named = compute.naming(_step(progress, len(targets) + 1 + number, n_steps), given.name)
+        matching = _recall_matching(prepared, target, options, compute.section(named, 0, MATCHING_SHARE))
+        carrying = compute.section(named, MATCHING_SHARE, 1)
+        shapes.append(_divide(prepared, given.name, target, matching, options, first_free, carrying))
+        first_free = max(first_free, shapes[-1].highest_label + 1)
+    progress(1.0, "Done")
+    return Registration(prepared, tuple(shapes))
+
+
+def register_one(
+    reference: PreparedReference,
+    target: AnalysisInput,
+    options: MatchOptions,
+    first_free: int,
+    progress: compute.Progress,
+) -> RegisteredShape:
+    """Return a mesh divided into the parts of a reference; its own are numbered from ``first_free``."""
+    shape = matchable_shape(target, progress)
+    matching = _match(reference, shape, options, progress)
+    return _divide(reference, target.name, shape, matching, options, first_free, progress)
+
+
+def matchable_shape(
+    given: AnalysisInput,
+    progress: compute.Progress,
+    analysis_of: Callable[..., compute.Analysis] = recent_analyses.analyze,
+) -> MatchableShape:
+    """Return an analyzed mesh, ready to be matched."""
+    start = time.perf_counter()
+    analysis = analysis_of(given.arrays, given.options, compute.section(progress, 0, ANALYSIS_SHARE))
+    result = result_of(analysis, given, time.perf_counter() - start)
+    points = compute.matching_shape(analysis, compute.section(progress, ANALYSIS_SHARE, 1))
+    return MatchableShape(_key_of(given), compute.divisible(analysis, points, given.arrays.polygon_of_triangle), result)
+
+
+def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> PreparedReference:
+    """Return a reference with the parts that it is to show, and what was corrected by hand.
+
+    Raises
+    ------
+    Refusal
+        If it was corrected by hand in another analysis.
+    """
+    part_tree, choice, corrections = source.shape.part_tree, shown.choice, None
+    if shown.analysis is not None and _has_trees(shown.analysis.part_tree.hierarchy, part_tree.hierarchy):
+        part_tree = replace(part_tree, branches=shown.analysis.part_tree.branches)
+        corrections = shown.analysis.corrections
+        if not choice and shown.level is not None:
+            choice = {"level": shown.level}
+    elif shown.analysis is not None and shown.analysis.corrections is not None and shown.analysis.corrections.items:
+        raise Refusal(CORRECTED_BEFORE.format(name))
+    labels = compute.label_branches(part_tree, mode=shown.mode, corrections=corrections, **choice)
+    faces = labels.of_faces(part_tree).astype(np.int64)
+    matched = compute.with_parts(source.shape, faces, labels.parts, labels.level)
+    return PreparedReference(
+        name=name, key=source.key, result=source.result, level=labels.level, mode=shown.mode, matched=matched
+    )
+
+
+def _recall_shape(given: AnalysisInput, progress: compute.Progress) -> MatchableShape:
+    """Return the shape of a mesh as it was prepared before, or prepare and keep it."""
+    known = _recent_shapes.get(_key_of(given))
+    if known is None:
+        with in_name_of(given.name):
+            known = matchable_shape(given, compute.naming(progress, given.name), recent_analyses.reuse)
+        _recent_shapes.put(known.key, known, len(known.shape.shape.positions))
+    return known
+
+
+def _key_of(given: AnalysisInput) -> str:
+    arrays = given.arrays
+    options = [item for pair in sorted(given.options.items()) for item in pair]
+    return key_of([arrays.vertices, arrays.triangles, arrays.polygon_of_triangle, *options])
+
+
+def _has_trees(stored: compute.Hierarchy, hierarchy: compute.Hierarchy) -> bool:
+    trees = [[tree.extremum.tolist() for tree in one.trees] for one in (stored, hierarchy)]
+    return trees[0] == trees[1] and stored.n_levels == hierarchy.n_levels
+
+
+def _recall_matching(
+    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
+) -> compute.Matching:
+    """Return the best matching as it was found before, or find and keep it."""
+    key = key_of([reference.key, target.key, sorted(options.flips.items()), options.mirrored])
+    known = _recent_matchings.get(key)
+    if known is None:
+        known = _match(reference, target, options, progress)
+        _recent_matchings.put(key, known, 1)
+    return known
+
+
+def _match(
+    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
+) -> compute.Matching:
+    return compute.match_divisible(
+        reference.matched, target.shape, flips=options.flips, mirrored=options.mirrored, progress=progress
+    )
+
+
+def _divide(
+    reference: PreparedReference,
+    name: str,
+    target: MatchableShape,
+    best: compute.Matching,
+    options: MatchOptions,
+    first_free: int,
+    progress: compute.Progress,
+) -> RegisteredShape:
+    """Return a target divided by the matching that was chosen."""
+    matchings = (best, *best.alternatives)
+    alternative = options.alternative % len(matchings)
+    diagrams = compute.match_shape_diagrams(reference.matched.shape.shape, target.shape.shape)
+    return RegisteredShape(
+        name=name,
+        result=target.result,
+        labels=compute.label_matched(reference.matched, target.shape, matchings[alternative], first_free, progress),
+        matching=matchings[alternative],
+        alternative=alternative,
+        n_alternatives=len(matchings) - 1,
+        by_diagrams=tuple(np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order)).tolist()),
+    )
+
+
+def _step(progress: compute.Progress, number: int, n_steps: int) -> compute.Progress:
+    """Return a callback whose 0..1 is one of some equal steps."""
+    return compute.section(progress, number / n_steps, (number + 1) / n_steps)

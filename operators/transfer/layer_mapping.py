@@ -1,0 +1,271 @@
+"""Layers mapped from one shape to others; knows nothing of Blender, so any thread may do it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ... import compute
+from ..jobs import recent_analyses
+from ..jobs.recent_results import Recent, key_of
+from ..mesh_data.mesh_arrays import MeshArrays
+from ..messages.user_errors import Refusal, in_name_of
+from ..registration.match_options import MatchOptions
+from . import layers
+from .layers import Layer
+
+# What an analysis needs for matching.
+JUST_ENOUGH = {"n_functions": 2, "order": 1}
+# Vertices of all maps that are kept; each takes a tenth of a kB.
+RECENT_VERTICES = 200_000
+# A matching this unsure is none.
+NO_MATCH = 0.03
+NOT_ALIKE = (
+    "{} and {} are not alike enough to be matched (confidence {:.0%}); nothing was transferred. If one is the mirror"
+    " image of the other, choose Mirrored."
+)
+
+_recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
+
+
+@dataclass(frozen=True, eq=False)
+class TransferShape:
+    """A mesh that layers come from or go to.
+
+    Attributes
+    ----------
+    name : str
+        Of the object.
+    arrays : MeshArrays
+    corners : (T, 3) int64
+        The corner of a face that each corner of a triangle is.
+    corner_vertex, corner_polygon : (C,) int64
+        Vertex and face of each corner.
+    options : MatchOptions
+        How a target is matched with the source.
+    """
+
+    name: str
+    arrays: MeshArrays
+    corners: NDArray[np.int64]
+    corner_vertex: NDArray[np.int64]
+    corner_polygon: NDArray[np.int64]
+    options: MatchOptions = field(default_factory=MatchOptions)
+
+    @property
+    def mesh(self) -> compute.TriangleMesh:
+        """The triangles as the engine takes them."""
+        return compute.TriangleMesh(self.arrays.vertices, self.arrays.triangles)
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeMap:
+    """The map from a target to the source, with what their analyses warn of."""
+
+    correspondence: compute.Correspondence
+    source_warnings: tuple[str, ...]
+    target_warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class MappedLayers:
+    """The layers that one target gets.
+
+    Attributes
+    ----------
+    layers : list of Layer
+    is_sure : (V,) bool
+    found_by : str
+        "number", "faces" or "shape".
+    confidence : float
+        Of the matching.
+    torn_seams : tuple of str
+        Layers whose seams could not be kept.
+    warnings : tuple of str
+        Of the two analyses, beginning with the names of the objects.
+    """
+
+    layers: list[Layer]
+    is_sure: NDArray[np.bool_]
+    found_by: str
+    confidence: float
+    torn_seams: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
+
+
+def map_to_all(
+    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: compute.Progress
+) -> list[MappedLayers]:
+    """Return the layers that each target gets.
+
+    Parameters
+    ----------
+    fills : bool
+        Whether unsure vertices are filled in from their neighbours.
+    """
+    targets = [_split_alike(source, target) for target in targets]
+    maps = _recall_maps(source, targets, progress)
+    return [_mapped(shape_map, source, target, given, fills) for shape_map, target in zip(maps, targets, strict=True)]
+
+
+def _recall_maps(source: TransferShape, targets: list[TransferShape], progress: compute.Progress) -> list[ShapeMap]:
+    """Return the maps to all targets; those that were found for other layers before are at hand."""
+    keys = [_key_of_map(source, target) for target in targets]
+    known = {key: found for key in keys if (found := _recent_maps.get(key)) is not None}
+    missing = {key: target for key, target in zip(keys, targets, strict=True) if key not in known}
+    if missing:
+        known |= _new_maps(source, missing, progress)
+    return [known[key] for key in keys]
+
+
+def _new_maps(
+    source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
+) -> dict[str, ShapeMap]:
+    # All are analyzed first: what cannot be is told before the longer part begins.
+    first, *others = _steps(compute.section(progress, 0, 0.3), 1 + len(targets))
+    source_analysis = _analyze(source, first, recent_analyses.recall)
+    analyses = [
+        _analyze(target, step, recent_analyses.reuse) for target, step in zip(targets.values(), others, strict=True)
+    ]
+    maps = {}
+    steps = _steps(compute.section(progress, 0.3, 0.95), len(targets))
+    for (key, target), analysis, step in zip(targets.items(), analyses, steps, strict=True):
+        correspondence = _correspond(source, target, source_analysis, analysis, compute.naming(step, target.name))
+        maps[key] = ShapeMap(correspondence, source_analysis.warnings, analysis.warnings)
+        _recent_maps.put(key, maps[key], len(target.arrays.vertices))
+    return maps
+
+
+def _key_of_map(source: TransferShape, target: TransferShape) -> str:
+    places = [array for shape in (source, target) for array in (shape.arrays.vertices, shape.arrays.triangles)]
+    options = target.options
+    return key_of([*places, options.mirrored, sorted(options.flips.items()), options.alternative])
+
+
+def _steps(progress: compute.Progress, number: int) -> list[compute.Progress]:
+    """Return callbacks whose 0..1 are equal steps, one after the other."""
+    return [compute.section(progress, k / number, (k + 1) / number) for k in range(number)]
+
+
+def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
+    """Return a target with the triangles of the source where the faces are the same: poses may split quads apart."""
+    alike = (
+        len(source.arrays.vertices) == len(target.arrays.vertices)
+        and np.array_equal(source.corner_vertex, target.corner_vertex)
+        and np.array_equal(source.corner_polygon, target.corner_polygon)
+    )
+    if not alike:
+        return target
+    triangles = target.corner_vertex[source.corners]
+    polygons = source.arrays.polygon_of_triangle
+    return replace(target, arrays=replace(target.arrays, triangles=triangles, polygon_of_triangle=polygons))
+
+
+def _analyze(
+    shape: TransferShape, progress: compute.Progress, analysis_of: Callable[..., compute.Analysis]
+) -> compute.Analysis:
+    """Return an analysis that is just enough for matching."""
+    with in_name_of(shape.name):
+        return analysis_of(shape.arrays, JUST_ENOUGH, compute.naming(progress, shape.name))
+
+
+def _correspond(
+    source: TransferShape,
+    target: TransferShape,
+    source_analysis: compute.Analysis,
+    target_analysis: compute.Analysis,
+    progress: compute.Progress,
+) -> compute.Correspondence:
+    options = target.options
+    matching = compute.match(
+        source_analysis,
+        target_analysis,
+        flips=dict(options.flips),
+        mirrored=options.mirrored,
+        progress=compute.section(progress, 0, 0.5),
+    )
+    choices = (matching, *matching.alternatives)
+    matching = choices[options.alternative % len(choices)]
+    if matching.confidence < NO_MATCH:
+        raise Refusal(NOT_ALIKE.format(source.name, target.name, matching.confidence))
+    return compute.correspond(
+        source_analysis, target_analysis, matching=matching, progress=compute.section(progress, 0.5, 1)
+    )
+
+
+def _mapped(
+    shape_map: ShapeMap, source: TransferShape, target: TransferShape, given: list[Layer], fills: bool
+) -> MappedLayers:
+    correspondence = shape_map.correspondence
+    mapper = _LayerMapper(correspondence, source, target)
+    mapped = [mapper.map(layer) for layer in given]
+    if fills and not correspondence.is_sure.all():
+        mapped = [_filled(correspondence, mapper.target_mesh, layer) for layer in mapped]
+    return MappedLayers(
+        layers=mapped,
+        is_sure=correspondence.is_sure,
+        found_by=correspondence.found_by,
+        confidence=float(correspondence.matching.confidence),
+        torn_seams=tuple(mapper.torn_seams),
+        warnings=(
+            *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
+            *(f"{target.name}: {warning}" for warning in shape_map.target_warnings),
+        ),
+    )
+
+
+def _filled(correspondence: compute.Correspondence, mesh: compute.TriangleMesh, layer: Layer) -> Layer:
+    if not layer.can_blend or layer.kind == layers.CORNER:
+        return layer
+    return layer.with_values(compute.fill_unsure(correspondence, mesh, layer.values.astype(np.float64)))
+
+
+class _LayerMapper:
+    """Maps layers from one mesh to another."""
+
+    def __init__(self, correspondence: compute.Correspondence, source: TransferShape, target: TransferShape) -> None:
+        self._correspondence, self._source, self._target = correspondence, source, target
+        self._source_mesh, self.target_mesh = source.mesh, target.mesh
+        self.torn_seams: list[str] = []
+
+    def map(self, layer: Layer) -> Layer:
+        """Return the layer with values for the target."""
+        if layer.kind in (layers.GROUP, layers.POINT):
+            correspondence = self._correspondence
+            transfer = correspondence.transfer if layer.can_blend else correspondence.transfer_labels
+            return layer.with_values(transfer(layer.values))
+        if layer.kind == layers.SHAPE_KEY:
+            moved = compute.transfer_displacements(
+                self._correspondence, self._source_mesh, self.target_mesh, layer.values
+            )
+            return layer.with_values(moved)
+        if layer.kind == layers.CORNER:
+            return layer.with_values(self._corners(layer))
+        return layer.with_values(self._faces(layer.values))
+
+    def _faces(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return for each face what most of its area has on the source."""
+        kinds, kind = np.unique(values, axis=0, return_inverse=True)
+        labels = self._correspondence.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])
+        n_polygons = int(self._target.corner_polygon.max(initial=-1)) + 1
+        polygon = self._target.arrays.polygon_of_triangle
+        return kinds[compute.majority_of_polygons(labels, self.target_mesh.areas, polygon, n_polygons)]
+
+    def _corners(self, layer: Layer) -> NDArray[np.float64]:
+        triangle_of_polygon = np.zeros(int(self._target.corner_polygon.max(initial=-1)) + 1, dtype=np.int64)
+        polygon = self._target.arrays.polygon_of_triangle
+        triangle_of_polygon[polygon[::-1]] = np.arange(len(polygon))[::-1]
+        values, keeps_seams = compute.transfer_corners(
+            self._correspondence,
+            self._source_mesh,
+            layer.values.astype(np.float64)[self._source.corners],
+            self._target.corner_vertex,
+            triangle_of_polygon[self._target.corner_polygon],
+        )
+        if not keeps_seams:
+            self.torn_seams.append(layer.name)
+        return values
