@@ -32,9 +32,9 @@ def test_results_go_beside_their_files_or_into_one_folder(cli):
     jobs_of_files, files = cli["jobs"].jobs_of_files, [Path("a/star.off"), Path("b/star.off"), Path("a/star.off")]
     beside = jobs_of_files(files, None, lambda path: f"new_{path.name}")
     assert [job.target for job in beside] == [Path("a/new_star.off"), Path("b/new_star.off")]
-    assert cli["jobs"].in_the_way(beside) == {}
+    assert cli["jobs"].conflicting_jobs(beside) == {}
     together = jobs_of_files(files, Path("out"), lambda path: path.name)
-    assert cli["jobs"].in_the_way(together) == {together[1]: Path("a/star.off")}
+    assert cli["jobs"].conflicting_jobs(together) == {together[1]: Path("a/star.off")}
 
 
 @pytest.fixture

@@ -27,11 +27,11 @@ def cli():
 def told(cli, options, reports):
     """Return what stands on stdout after each report, and at the end."""
     out, steps = io.StringIO(), []
-    teller = cli["reporters"].teller_for(cli["arguments"].parse(["segment", "star.off", *options]), out)
+    reporter = cli["reporters"].reporter_for(cli["arguments"].parse(["segment", "star.off", *options]), out)
     for report in reports:
-        teller.tell(report)
+        reporter.add(report)
         steps.append(out.getvalue())
-    teller.close()
+    reporter.close()
     return steps, out.getvalue()
 
 
