@@ -91,7 +91,7 @@ def test_poses_with_one_topology_correspond_by_number(ball):
     np.testing.assert_array_equal(own.parts.id, other.parts.id)
 
 
-@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
+@pytest.mark.parametrize("pool", [pytest.param(ThreadPoolExecutor, marks=pytest.mark.long), ProcessPoolExecutor])
 def test_executors_give_what_a_loop_gives(ball, finer, pool):
     # Processes are spawned, as they are inside Blender, where forking is not safe.
     options = {"mp_context": get_context("spawn")} if pool is ProcessPoolExecutor else {}
