@@ -67,9 +67,14 @@ class MeshState:
             raise Refusal(schema.ABSENT)
         if not isinstance(self.get(schema.VERSION), int):
             raise Refusal(schema.DAMAGED)
-        if self.stored[schema.VERSION] > schema.SCHEMA:
-            raise Refusal(schema.NEWER)
+        self.refuse_newer()
         return self.stored
+
+    def refuse_newer(self) -> None:
+        """Raise a Refusal if a newer version has stored what would be replaced."""
+        version = self.get(schema.VERSION)
+        if isinstance(version, int) and version > schema.SCHEMA:
+            raise Refusal(schema.NEWER)
 
     @cached_property
     def summary(self) -> Summary:

@@ -91,6 +91,7 @@ def read_target(context: bpy.types.Context, obj: bpy.types.Object, settings: Ana
     """Return what the analysis of an object needs, or say by its name why there can be none."""
     with in_name_of(obj.name):
         refuse_unwritable(mesh_of(obj))
+        read(mesh_of(obj)).refuse_newer()
         return mesh_segmentation.read(context, obj, settings)
 
 

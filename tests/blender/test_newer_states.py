@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.blender.conftest import everything_on, values_of
+from tests.blender.conftest import add_object, everything_on, values_of
 from tests.blender.drawn import draw_panels
 
 STATE = "eigenparts_state"
@@ -54,6 +54,18 @@ def test_no_setting_reads_or_changes_it(newer, name, value):
     setattr(newer.data.eigenparts, name, value)
     assert SENTENCE in bpy.context.window_manager.eigenparts.problem
     assert all_of(newer.data) == before
+
+
+@pytest.mark.parametrize("is_reference", [True, False])
+def test_registering_replaces_it_on_no_mesh(newer, star, is_reference):
+    other = add_object(star.vertices, star.triangles, "other")
+    newer.select_set(True)
+    bpy.context.view_layer.objects.active = newer if is_reference else other
+    before = all_of(newer.data)
+    with pytest.raises(RuntimeError, match=SENTENCE):
+        bpy.ops.eigenparts.register_selected(order="1")
+    assert all_of(newer.data) == before
+    assert STATE not in other.data
 
 
 def test_panels_draw_and_leave_it(newer):
