@@ -100,7 +100,6 @@ from .segmentation.parts.function_hints import judge_eigenfunctions as judge_eig
 from .segmentation.parts.part_labels import BranchLabels as BranchLabels
 from .segmentation.parts.part_labels import Parts as Parts
 from .segmentation.parts.part_labels import Segmentation as Segmentation
-from .segmentation.parts.part_labels import label_behind as label_behind
 from .segmentation.parts.part_labels import label_branches as label_branches
 from .skeletons.binding import binding_weights as binding_weights
 from .skeletons.embedding import Skeleton as Skeleton
