@@ -45,7 +45,7 @@ lint: environment  ## ruff and mypy
 package: environment  ## one installable zip for each platform in dist/
 	@$(RUN) tools/package.py
 
-test-matrix: package  ## tests and zip on every supported Blender, or VERSIONS="4.2.23 5.2.3"
+test-matrix: package  ## tests and zip on every supported Blender and newest numpy, or VERSIONS="4.2.23 5.2.3-newest"
 	@$(RUN) tools/test_matrix.py $(VERSIONS)
 
 test-window: environment  ## the zip in the real Blender application, on a screen of its own; pictures in demo/window

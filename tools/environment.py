@@ -1,11 +1,13 @@
 """Make a virtual environment in which Eigenparts runs with Blender as a Python module.
 
-usage: python tools/environment.py FOLDER [BLENDER_VERSION]
+usage: python tools/environment.py FOLDER [BLENDER_VERSION[-newest]]
 
 Does nothing where the environment is already as it should be. Without a version it takes the Blender that fits the
-Python it is started with, or another Python that it finds.
+Python it is started with, or another Python that it finds. "5.2.3-newest" has the newest numpy and scipy that pip finds
+for this Blender, as ``pip install bpy scipy`` brings them; it is looked for again every day.
 """
 
+import datetime
 import hashlib
 import subprocess
 import sys
@@ -24,7 +26,10 @@ BLENDERS = {
     "4.5.15": ("3.11", "1.26.4"),
     "5.0.1": ("3.11", "1.26.4"),
     "5.2.3": ("3.13", "2.3.4"),
+    # The numpy of 5.2: the module asks for any from 2.2 on.
+    "5.3.0": ("3.13", "2.3.4"),
 }
+NEWEST = "-newest"
 # The Blender that development uses on each Python, in the order of preference where neither is given.
 USUAL_BLENDERS = {"3.11": "4.5.15", "3.13": "5.2.3"}
 
@@ -40,12 +45,22 @@ def make_environment(folder: Path, blender: str) -> Path:
     wanted = _fingerprint(blender)
     if not (stamp.is_file() and stamp.read_text() == wanted and python.exists()):
         _refuse_foreign(folder, stamp)
-        _create(folder, BLENDERS[blender][0])
+        _create(folder, python_of(blender))
         stamp.write_text("not finished\n")
         _install(python, blender)
         _check_import(python)
         stamp.write_text(wanted)
     return python
+
+
+def is_known(blender: str) -> bool:
+    """Whether there is an environment for a version, "5.2.3" or "5.2.3-newest"."""
+    return blender.removesuffix(NEWEST) in BLENDERS
+
+
+def python_of(blender: str) -> str:
+    """Return the version of Python that a Blender is built for."""
+    return BLENDERS[blender.removesuffix(NEWEST)][0]
 
 
 def usual_blender() -> str:
@@ -61,8 +76,19 @@ def usual_blender() -> str:
 
 
 def _fingerprint(blender: str) -> str:
-    recipe = blender + "".join(BLENDERS[blender]) + REQUIREMENTS.read_text()
-    return f"Blender {blender}, recipe {hashlib.sha256(recipe.encode()).hexdigest()}\n"
+    recipe = " ".join(_packages(blender))
+    found_on = f", of {datetime.date.today()}" if blender.endswith(NEWEST) else ""
+    return f"Blender {blender}, recipe {hashlib.sha256(recipe.encode()).hexdigest()}{found_on}\n"
+
+
+def _packages(blender: str) -> list[str]:
+    """Return what pip is asked for; a newest environment leaves the versions of numpy and scipy to it."""
+    lines = [line.partition("#")[0].strip() for line in REQUIREMENTS.read_text().splitlines()]
+    companions = [line for line in lines if line]
+    version = blender.removesuffix(NEWEST)
+    if version == blender:
+        return [f"bpy=={version}", f"numpy=={BLENDERS[version][1]}", *companions]
+    return [f"bpy=={version}", "numpy", "scipy", *(line for line in companions if not line.startswith("scipy=="))]
 
 
 def _refuse_foreign(folder: Path, stamp: Path) -> None:
@@ -85,9 +111,7 @@ def _create(folder: Path, version: str) -> None:
 
 
 def _install(python: Path, blender: str) -> None:
-    numpy = BLENDERS[blender][1]
-    packages = [f"bpy=={blender}", f"numpy=={numpy}", "-r", str(REQUIREMENTS)]
-    command = [str(python), "-m", "pip", "install", "-qq", "--disable-pip-version-check", *packages]
+    command = [str(python), "-m", "pip", "install", "-qq", "--disable-pip-version-check", *_packages(blender)]
     if subprocess.run(command).returncode:
         raise SetUpError(f"pip could not install Blender {blender} and its companions; see its message above.")
 

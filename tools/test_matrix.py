@@ -1,6 +1,9 @@
 """Run the Blender tests on several Blender versions, each in an environment of its own, and install the zip in each.
 
 usage: python tools/test_matrix.py [VERSION...]
+
+"5.2.3" is tested with the numpy that this Blender ships, and its zip with the scipy in it; "5.2.3-newest" with the
+newest numpy and scipy that pip finds for it, the tests of the engine too. Without a version, all of both.
 """
 
 import os
@@ -12,10 +15,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from tools.environment import BLENDERS, SetUpError, make_environment
+from tools.environment import BLENDERS, NEWEST, SetUpError, is_known, make_environment, python_of
 
 ROOT = Path(__file__).parents[1]
 TESTS = ["tests/blender", "tests/cli"]
+VERSIONS = "import numpy, scipy; print('numpy', numpy.__version__ + ', scipy', scipy.__version__)"
 SYSTEMS = {
     "Linux": "linux_x64",
     "Windows": "windows_x64",
@@ -25,24 +29,40 @@ SYSTEMS = {
 
 def main(versions: list[str]) -> int:
     """Test each version and print one line for it; return 1 if anything failed."""
-    outcomes = [_try(version) for version in versions or BLENDERS]
+    outcomes = [_try(version) for version in versions or [*BLENDERS, *(f"{version}{NEWEST}" for version in BLENDERS)]]
     sys.stdout.write("\n" + "\n".join(line for line, _ in outcomes) + "\n")
     return int(not all(passed for _, passed in outcomes))
 
 
 def _try(version: str) -> tuple[str, bool]:
     """Return one line about a version, and whether all went well."""
-    if version not in BLENDERS:
+    if not is_known(version):
         return f"Blender {version}: unknown; tools/environment.py has {', '.join(BLENDERS)}", False
     start = time.monotonic()
     try:
         python = make_environment(ROOT / ".environments" / version, version)
     except SetUpError as error:
         return f"Blender {version}: {error}", False
-    tests, tests_passed = _run(python, "-m", "pytest", "-q", "--numprocesses", "auto", "-m", "not long", *TESTS)
+    told, passed = _try_newest(python) if version.endswith(NEWEST) else _try_shipped(python)
+    return f"Blender {version} (Python {python_of(version)}{told} [{time.monotonic() - start:.0f} s in all]", passed
+
+
+def _try_shipped(python: Path) -> tuple[str, bool]:
+    """Test what users of the application have: its numpy, and the scipy of the zip."""
+    tests, tests_passed = _test(python, TESTS)
     package, package_works = _run(python, "tools/try_package.py", _archive())
-    told = f"Blender {version} (Python {BLENDERS[version][0]}): {tests}; from the zip: {package}"
-    return f"{told} [{time.monotonic() - start:.0f} s in all]", tests_passed and package_works
+    return f"): {tests}; from the zip: {package}", tests_passed and package_works
+
+
+def _try_newest(python: Path) -> tuple[str, bool]:
+    """Test what ``pip install bpy scipy`` brings, which has no zip; the engine meets these versions nowhere else."""
+    libraries, _ = _run(python, "-c", VERSIONS)
+    tests, passed = _test(python, [*TESTS, "tests/compute"])
+    return f", {libraries}): {tests}", passed
+
+
+def _test(python: Path, tests: list[str]) -> tuple[str, bool]:
+    return _run(python, "-m", "pytest", "-q", "--numprocesses", "auto", "-m", "not long", *tests)
 
 
 def _run(python: Path, *arguments: str) -> tuple[str, bool]:

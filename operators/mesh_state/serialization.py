@@ -5,7 +5,7 @@ A file may come from anywhere, so only what has the type that was written is rea
 
 import math
 from dataclasses import fields
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,5 +66,8 @@ def _number(value: Any, kind: type) -> Any:
 
 def _dtype(annotation: Any) -> str:
     """Return the name of the type of an array's numbers, nothing if it is no array."""
-    arguments = get_args(annotation)
-    return np.dtype(get_args(arguments[1])[0]).name if getattr(annotation, "__origin__", None) is np.ndarray else ""
+    # From NumPy 2.5 on, NDArray is an alias of its own that keeps the numbers' type alone.
+    if get_origin(annotation) not in (np.ndarray, NDArray):
+        return ""
+    (*_, numbers) = get_args(annotation)
+    return np.dtype(get_args(numbers)[0] if get_origin(numbers) is np.dtype else numbers).name

@@ -1,6 +1,7 @@
 """Arrays and records as plain numbers and texts on a mesh: they come back as they were, and nothing else comes back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, make_dataclass
+from types import GenericAlias
 
 import bpy
 import numpy as np
@@ -66,6 +67,23 @@ def test_a_record_comes_back_without_what_belongs_to_faces(serialization):
     for name, value in back.items():
         np.testing.assert_array_equal(value, getattr(a_tree(), name))
         assert type(value) is type(getattr(a_tree(), name))
+
+
+class AliasOfItsOwn:
+    """An NDArray as NumPy 2.5 has it: what it makes remembers the alias and the numbers, not ``numpy.ndarray``."""
+
+    def __getitem__(self, numbers):
+        return GenericAlias(self, (numbers,))
+
+
+def test_arrays_are_known_by_the_annotations_of_every_numpy(serialization, monkeypatch):
+    alias = AliasOfItsOwn()
+    monkeypatch.setattr(serialization, "NDArray", alias)
+    for array in (a_tree().parent, a_tree().height, a_tree().is_maximum):
+        record = make_dataclass("Record", [("of_arc", alias[array.dtype.type]), ("of_net", NDArray[array.dtype.type])])
+        back = serialization.unpacked(through_a_mesh(serialization.packed(record(array, array))), record)
+        np.testing.assert_array_equal(back["of_arc"], array)
+        np.testing.assert_array_equal(back["of_net"], array)
 
 
 def test_the_end_of_the_numbers_that_blender_keeps_stays_beyond_every_other(serialization):

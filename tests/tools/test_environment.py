@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tools import environment
 from tools.pythons import find_python
 from tools.system_libraries import PACKAGE_OF_LIBRARY, explain_failed_import
 
@@ -61,3 +62,27 @@ def test_a_folder_that_is_not_ours_is_not_cleared(tmp_path):
     assert made.returncode != 0
     assert "was not made for this" in made.stdout + made.stderr
     assert (tmp_path / "thesis.txt").read_text() == "precious"
+
+
+def test_an_environment_has_what_the_application_ships():
+    packages = environment._packages("5.2.3")
+    assert {"bpy==5.2.3", "numpy==2.3.4"} < set(packages)
+    assert sum(package.startswith("scipy==") for package in packages) == 1
+
+
+def test_a_newest_environment_leaves_numpy_and_scipy_to_pip():
+    packages = environment._packages("5.2.3-newest")
+    assert {"bpy==5.2.3", "numpy", "scipy"} < set(packages)
+    assert not [package for package in packages if package.startswith(("numpy==", "scipy=="))]
+
+
+def test_a_newest_environment_is_made_again_on_another_day(monkeypatch):
+    class Tomorrow(environment.datetime.date):
+        @classmethod
+        def today(cls):
+            return cls(2999, 1, 1)
+
+    made_today = environment._fingerprint("5.2.3-newest"), environment._fingerprint("5.2.3")
+    monkeypatch.setattr(environment.datetime, "date", Tomorrow)
+    assert environment._fingerprint("5.2.3-newest") != made_today[0]
+    assert environment._fingerprint("5.2.3") == made_today[1]
