@@ -95,7 +95,7 @@ class PersistenceDiagram:
 
         Examples
         --------
-        >>> analysis.diagram.intervals(2)[0, 1]
+        >>> float(analysis.diagram.intervals(2)[0, 1])
         inf
         """
         if dimension == 0:
