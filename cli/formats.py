@@ -8,7 +8,6 @@ import bpy
 
 from ..operators.blender.known_values import mesh_of
 from ..operators.messages.user_errors import Refusal
-from .atomic_write import staged
 from .materials import give_parts_materials
 from .off import read_off, write_off
 
@@ -53,10 +52,9 @@ def name_of_transferred(source: Path) -> str:
     return _name_of_result(source, "_transferred", ".blend")
 
 
-def save(target: Path) -> None:
-    """Write what is open now, in the format that the name says."""
-    with staged(target.absolute()) as stage:
-        FORMATS[target.suffix.lower()].write(stage)
+def save(path: Path) -> None:
+    """Write what is open now, in the format that the name says, one folder below its place."""
+    FORMATS[path.suffix.lower()].write(path)
 
 
 def _name_of_result(source: Path, ending: str, suffix: str) -> str:
