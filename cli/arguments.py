@@ -139,7 +139,9 @@ def _add_division(command: argparse.ArgumentParser) -> None:
 def _add_execution(command: argparse.ArgumentParser) -> None:
     command.add_argument("--output", metavar="DIR", type=Path, help="folder for results; otherwise beside each file")
     command.add_argument(
-        "--overwrite", action="store_true", help="results may replace files that are not known as results of these files"
+        "--overwrite",
+        action="store_true",
+        help="results may replace files that are not known as results of theirs",
     )
     report = command.add_mutually_exclusive_group()
     report.add_argument("--json", action="store_true", help="print the report as JSON")

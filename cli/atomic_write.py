@@ -4,14 +4,16 @@ A stage holds a file that says so and that its process keeps locked. So those of
 from those of others that write into the same folder at the same time, and both from the user's folders.
 """
 
+import errno
 import os
 import secrets
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from hashlib import blake2b
 from pathlib import Path
 
+from .digests import digest_there
 from .locks import folder_lock, try_lock
 
 PREFIX = ".eigenparts-"
@@ -62,6 +64,22 @@ def check_room(stage: Path) -> None:
         probe.flush()
         os.fsync(probe.fileno())
     (stage / "room").unlink()
+
+
+def write_surely(write: Callable[[], object], path: Path) -> None:
+    """Write a file, and what belongs to it, with an exporter that does not tell what it could not write.
+
+    It is written twice, since no accident happens twice in the same way, and a full disk is noticed otherwise.
+    """
+    write()
+    first = _digests_in(path.parent)
+    write()
+    if first != _digests_in(path.parent):
+        raise OSError(errno.EIO, "it could not be written as a whole", path.name)
+
+
+def _digests_in(stage: Path) -> dict[str, str | None]:
+    return {path.name: digest_there(path) for path in files_in(stage)}
 
 
 def _remove_if_stale(stage: Path) -> None:

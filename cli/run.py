@@ -11,7 +11,7 @@ from .formats import name_of_divided, name_of_transferred
 from .jobs import Job, jobs_of_files, refused_jobs
 from .process_pool import cluster_pool, local_pool
 from .registering import Register
-from .report import Report
+from .report import Report, problem_of
 from .reporters import ProgressLine, reporter_for
 from .run_serial import Command, failed_report, run_in_this_process
 from .segmenting import Segment
@@ -25,6 +25,9 @@ def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
         return do(options, out, err)
     except Refusal as refusal:
         err.write(f"{refusal}\n")
+    except OSError as error:
+        # What is told goes into a file on a full disk, or to a program that has ended.
+        err.write(f"{problem_of(error)}\n")
     except KeyboardInterrupt:
         err.write("Interrupted; what is finished stays.\n")
     return 1

@@ -1,5 +1,6 @@
 """Do one file after the other in this process: open, divide, write, tell."""
 
+import re
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -67,10 +68,21 @@ def _do(job: Job, command: Command, start: float) -> Report:
 
 def _write(job: Job, report: Report, start: float) -> None:
     with stage_in(job.target.absolute().parent) as stage:
-        formats.save(stage / job.target.name)
-        check_room(stage)
+        _save(stage / job.target.name)
         report["output"], report["seconds"] = str(job.target), _seconds_since(start)
         publish(job, stage, report)
+
+
+def _save(path: Path) -> None:
+    try:
+        formats.save(path)
+    except RuntimeError as error:
+        check_room(path.parent)
+        # What is wrong stands at the end of what the exporters of Blender say, behind the name of a class.
+        lines = [line.strip() for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
+        cause = re.sub(r"^(\w*Error: |\[Errno \d+\] )+", "", lines[-1]).rstrip(".")
+        raise Refusal(f"Blender could not write {path.name}: {cause}.") from error
+    check_room(path.parent)
 
 
 def _seconds_since(start: float) -> float:

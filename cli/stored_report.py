@@ -45,12 +45,7 @@ def read_report(path: Path) -> StoredReport:
     value = _json_in(path) if stat.S_ISREG(mode) else None
     if not isinstance(value, dict):
         return StoredReport(is_there=True)
-    written = value.get("written")
-    return StoredReport(
-        is_there=True,
-        written=written if _is_written(written) else None,
-        report=value if _is_report(value) else None,
-    )
+    return StoredReport(True, _written_in(value.get("written")), value if _is_report(value) else None)
 
 
 def has_shape(value: object, kind: Any) -> bool:
@@ -80,9 +75,12 @@ def _json_in(path: Path) -> object:
         return None
 
 
-def _is_written(value: object) -> TypeGuard[Written]:
-    """Whether all names are those of files that lie beside the report."""
-    return has_shape(value, Written) and all(_is_name(name) for name in value["files"] | value.get("before", {}))
+def _written_in(value: Any) -> Written | None:
+    """Return what was written, if all names are those of files beside the report."""
+    if not has_shape(value, Written):
+        return None
+    written: Written = value
+    return written if all(map(_is_name, [*written["files"], *written.get("before", {})])) else None
 
 
 def _is_name(name: str) -> bool:

@@ -2,7 +2,9 @@
 
 A result is its file, the files that belong to it, and a report that keeps the digests of them all and the name of the
 input. A file is replaced if the report beside it has its digest and the same input; all else is the user's, or was
-changed by the user, and stays. This is looked at before the work, and again when the result takes its place.
+changed by the user, and stays. This is looked at before the work, and again when the result takes its place. What lies
+beside may also be no report at all, damaged or the user's. The result then shows: if it is there already, byte for
+byte, all is well, and nothing is touched.
 
 That takes several steps, since no system exchanges several files at once, and a process may be killed, or a disk be
 full, between any two of them:
@@ -27,7 +29,7 @@ from pathlib import Path
 
 from ..operators.messages.user_errors import Refusal
 from .atomic_write import files_in
-from .digests import digest_there
+from .digests import NO_FILE, digest_there
 from .jobs import Job
 from .locks import folder_lock
 from .report import Report, Written, as_line, path_beside
@@ -39,6 +41,7 @@ LONGEST_NAME = 255
 BELONGING = {".obj": ".mtl"}
 # The report without digests of what is replaced, in the stage.
 FINAL_REPORT = ".eigenparts-report"
+UNKNOWN = "not known as a result of Eigenparts"
 ADVICE = "so it is not replaced; choose another folder with --output, or allow it with --overwrite."
 
 
@@ -58,59 +61,49 @@ class Place:
     stored: StoredReport
     digests: dict[str, str]
 
-    def holds_same(self, written: dict[str, str]) -> bool:
-        """Whether all files are there already, and nothing says whose they are: a report that is damaged, perhaps."""
-        return self._is_doubtful() and written.items() <= self.digests.items()
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether what lies beside a file is no report at all: a damaged one of ours, or the user's."""
+        is_report = self.stored.written is not None or self.stored.report is not None
+        return self.stored.is_there and not is_report and self.job.target.name in self.digests
 
-    def objection(self, *, is_written: bool) -> str | None:
-        """Return a sentence if a result may not take this place; some of it shows only when the result is written."""
-        if folders := [name for name in (*self.digests, self._beside.name) if _is_folder(self._path(name))]:
-            return f"{self._path(folders[0])} is a folder, and the result needs its place; choose another with --output."
+    def objection(self) -> str | None:
+        """Return a sentence if a result may not take this place."""
+        beside = path_beside(self.job.target)
+        if folders := [name for name in (*self.digests, beside.name) if _is_folder(self._path(name))]:
+            return f"{self._path(folders[0])} is a folder where the result belongs; choose another with --output."
         if self.job.overwrite:
             return None
         if self.stored.written is not None:
             return self._objection_of(self.stored.written)
         if self.stored.report is not None:
-            return f"the report {self._beside} is of a version that did not keep what it wrote, {ADVICE}"
-        if self._is_doubtful():
-            return f"{self._path(self.job.target.name)} may be yours, as its report is none, {ADVICE}" if is_written else None
-        unknown = [*self.digests, *([self._beside.name] if self.stored.is_there else [])]
-        return self._is_unknown(unknown[0]) if unknown else None
-
-    @property
-    def _beside(self) -> Path:
-        return path_beside(self.job.target)
-
-    def _path(self, name: str) -> Path:
-        return self.job.target.with_name(name)
-
-    def _is_doubtful(self) -> bool:
-        is_no_report = self.stored.is_there and self.stored.written is None and self.stored.report is None
-        return is_no_report and self.job.target.name in self.digests
+            return f"{beside} is the report of a version that did not keep what it wrote, {ADVICE}"
+        unknown = [*self.digests, *([beside.name] if self.stored.is_there else [])]
+        return f"{self._path(unknown[0])} is {UNKNOWN}, {ADVICE}" if unknown and not self.is_doubtful else None
 
     def _objection_of(self, written: Written) -> str | None:
         if not _is_same(self.job.target.parent / written["source"], self.job.path):
             return f"{self.job.target} is the result of another file, {written['source']}, {ADVICE}"
-        before = written.get("before", {})
+        known = (written["files"], written.get("before", {}))
         for name, digest in self.digests.items():
-            if digest not in (written["files"].get(name), before.get(name)):
-                is_changed = name in written["files"]
-                return f"{self._path(name)} was changed since it was written, {ADVICE}" if is_changed else self._is_unknown(name)
+            if digest not in [digests.get(name) for digests in known]:
+                problem = "changed since it was written" if name in written["files"] else UNKNOWN
+                return f"{self._path(name)} is {problem}, {ADVICE}"
         return None
 
-    def _is_unknown(self, name: str) -> str:
-        return f"{self._path(name)} was not written by Eigenparts, as far as is known, {ADVICE}"
+    def _path(self, name: str) -> Path:
+        return self.job.target.with_name(name)
 
 
 def refuse_before_work(job: Job) -> None:
     """Raise a Refusal if the result of a file could not take its place."""
-    n_bytes = len(os.fsencode(path_beside(job.target).name))
-    if n_bytes > LONGEST_NAME:
-        raise Refusal(f"the name of its report would be too long; shorten the name of the file by {n_bytes - LONGEST_NAME}.")
+    excess = len(os.fsencode(path_beside(job.target).name)) - LONGEST_NAME
+    if excess > 0:
+        raise Refusal(f"the name of the report would be too long; shorten the name of the file by {excess} bytes.")
     belonging = BELONGING.get(job.target.suffix.lower())
     names = [job.target.name, *([job.target.with_suffix(belonging).name] if belonging else [])]
     with folder_lock(job.target.parent):
-        _refuse(_look(job, names), is_written=False)
+        _refuse(_look(job, names))
 
 
 def publish(job: Job, stage: Path, report: Report) -> None:
@@ -121,16 +114,18 @@ def publish(job: Job, stage: Path, report: Report) -> None:
     Refusal
         If something lies there that is not ours.
     """
-    files = {path.name: digest_there(path) or "" for path in files_in(stage)}
+    files = {path.name: digest_there(path) or NO_FILE for path in files_in(stage)}
     if job.target.name not in files:
         raise Refusal("Blender wrote no result.")
     with folder_lock(job.target.parent):
         place = _look(job, files)
-        if place.holds_same(files):
-            report["warnings"] = [f"{path_beside(job.target)} is none of its reports, and stays as it is"]
-            return
-        _refuse(place, is_written=True)
-        _move(job, stage, report, files, place.digests)
+        _refuse(place)
+        if not place.is_doubtful or job.overwrite:
+            _move(job, stage, report, files, place.digests)
+        elif files.items() <= place.digests.items():
+            report["warnings"] = [f"{path_beside(job.target)} is no report, and stays as it is"]
+        else:
+            raise Refusal(f"{job.target} may be yours, as what lies beside it is no report of it, {ADVICE}")
 
 
 def is_finished(job: Job, written: Written) -> bool:
@@ -164,8 +159,8 @@ def _look(job: Job, names: Iterable[str]) -> Place:
     return Place(job, stored, {name: digest for name, digest in digests.items() if digest is not None})
 
 
-def _refuse(place: Place, *, is_written: bool) -> None:
-    if (objection := place.objection(is_written=is_written)) is not None:
+def _refuse(place: Place) -> None:
+    if (objection := place.objection()) is not None:
         raise Refusal(objection)
 
 
