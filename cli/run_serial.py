@@ -81,7 +81,7 @@ def _save(path: Path) -> None:
         # What is wrong stands at the end of what the exporters of Blender say, behind the name of a class.
         lines = [line.strip() for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
         cause = re.sub(r"^(\w*Error: |\[Errno \d+\] )+", "", lines[-1]).rstrip(".")
-        raise Refusal(f"Blender could not write {path.name}: {cause}.") from error
+        raise Refusal(f"Blender could not write {path.name}: {cause}; is there room on the disk?") from error
     check_room(path.parent)
 
 
