@@ -42,7 +42,7 @@ class Resize:
 
 def save_as_text(path):
     """Stand in for an exporter: two files with the size of the star, and no call of Blender's that could be killed."""
-    size = str(size_of(bpy.data.objects[0]))
+    size = f"{size_of(bpy.data.objects[0]):.4g}"
     path.write_text(size)
     path.with_suffix(".mtl").write_text(size)
 
