@@ -40,8 +40,10 @@ def test_our_own_result_is_replaced_together_with_what_belongs_to_it(job, tmp_pa
 def test_a_file_of_the_user_stays_until_it_may_be_overwritten(job, tmp_path, name, monkeypatch):
     (tmp_path / name).write_text("days of work")
     before = texts_in(tmp_path)
-    monkeypatch.setattr(cli("digests"), "digest_of", pytest.fail)  # as all the work comes later
-    report = run_job(job, 1)
+    with monkeypatch.context() as patch:
+        # The first of the work.
+        patch.setattr(cli("run_serial"), "digest_of", pytest.fail)
+        report = run_job(job, 1)
     assert str(tmp_path / name) in report["error"]
     assert "--output" in report["error"]
     assert "--overwrite" in report["error"]

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 import warnings
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -110,6 +111,23 @@ def test_a_file_may_be_cut_short_anywhere(job, tmp_path, suffix):
         assert_old_or_new(job, report, tmp_path)
 
 
+@pytest.mark.parametrize("suffix", [".obj", ".ply"])
+def test_room_that_comes_back_does_not_hide_that_there_was_none(job, tmp_path, suffix, monkeypatch):
+    """These exporters go on where they could not write, and tell nobody."""
+    job, limits = job(suffix), resource.getrlimit(resource.RLIMIT_FSIZE)
+    run_job(job, 1)
+    digests_in = cli("atomic_write")._digests_in
+
+    def look_with_room(stage):
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        return digests_in(stage)
+
+    monkeypatch.setattr(cli("atomic_write"), "_digests_in", look_with_room)
+    report = with_limit(job.target.stat().st_size // 2, lambda: run_job(job, 2))
+    assert "could not be written as a whole" in report["error"]
+    assert_old_or_new(job, report, tmp_path)
+
+
 def with_limit(n_bytes, work):
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, hard))
@@ -167,22 +185,34 @@ def test_a_disk_may_be_full(tmp_path):
     assert sum(error != "" for _, error, _, _ in rows) >= 20
 
 
-@pytest.fixture
+@contextmanager
 def process_at_work(job):
-    """A process that writes results of one size after the other; yields it and its job."""
-    job = job(".off")
+    """Yield a process that writes results of one size and the other in turns."""
     command = [sys.executable, "-m", "tests.cli.write_on", job.path, job.target]
     with subprocess.Popen(list(map(str, command)), cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline() == "begins\n"
-        yield process, job
+        yield process
         process.kill()
 
 
 @pytest.mark.parametrize("moment", [0.1, *(pytest.param(k * 0.013, marks=pytest.mark.long) for k in range(60))])
-def test_a_process_may_be_killed_at_any_moment(process_at_work, tmp_path, moment):
+def test_a_process_may_be_killed_at_any_moment(job, tmp_path, moment):
     """A real one, which does nothing but write, killed by the clock."""
-    process, job = process_at_work
-    time.sleep(moment)
-    process.kill()
-    process.wait()
+    job = job(".off")
+    with process_at_work(job):
+        time.sleep(moment)
+    assert_old_or_new(job, {"error": "killed"}, tmp_path)
+
+
+def test_runs_that_write_the_same_result_go_on_side_by_side(job, tmp_path):
+    """Whenever nobody is exchanging files, the result is whole and its report is its own."""
+    job, seen = job(".off"), set()
+    with process_at_work(job) as first, process_at_work(job) as second:
+        end = time.monotonic() + 2
+        while time.monotonic() < end:
+            with cli("locks").folder_lock(tmp_path):
+                (level,) = sizes_finished(job)
+            seen.add(level)
+        assert (first.poll(), second.poll()) == (None, None)
+    assert seen == {1, 2}
     assert_old_or_new(job, {"error": "killed"}, tmp_path)
