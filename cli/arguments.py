@@ -138,6 +138,11 @@ def _add_division(command: argparse.ArgumentParser) -> None:
 
 def _add_execution(command: argparse.ArgumentParser) -> None:
     command.add_argument("--output", metavar="DIR", type=Path, help="folder for results; otherwise beside each file")
+    command.add_argument(
+        "--overwrite",
+        action="store_true",
+        help="results may replace files that are not known as results of theirs",
+    )
     report = command.add_mutually_exclusive_group()
     report.add_argument("--json", action="store_true", help="print the report as JSON")
     report.add_argument("--json-lines", action="store_true", help="print a report for each file as soon as it is done")

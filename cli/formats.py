@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import bpy
 
 from ..operators.blender.known_values import mesh_of
 from ..operators.messages.user_errors import Refusal
-from .atomic_write import staged
+from .atomic_write import write_surely
 from .materials import give_parts_materials
 from .off import read_off, write_off
 
@@ -53,10 +54,9 @@ def name_of_transferred(source: Path) -> str:
     return _name_of_result(source, "_transferred", ".blend")
 
 
-def save(target: Path) -> None:
-    """Write what is open now, in the format that the name says."""
-    with staged(target.absolute()) as stage:
-        FORMATS[target.suffix.lower()].write(stage)
+def save(path: Path) -> None:
+    """Write what is open now, in the format that the name says, one folder below its place."""
+    FORMATS[path.suffix.lower()].write(path)
 
 
 def _name_of_result(source: Path, ending: str, suffix: str) -> str:
@@ -82,7 +82,7 @@ def _read_obj(path: Path) -> None:
 
 def _write_obj(path: Path) -> None:
     give_parts_materials()
-    bpy.ops.wm.obj_export(filepath=str(path), export_materials=True, check_existing=False)
+    write_surely(lambda: bpy.ops.wm.obj_export(filepath=str(path), export_materials=True, check_existing=False), path)
 
 
 def _read_ply(path: Path) -> None:
@@ -90,7 +90,8 @@ def _read_ply(path: Path) -> None:
 
 
 def _write_ply(path: Path) -> None:
-    bpy.ops.wm.ply_export(filepath=str(path), export_colors="SRGB", export_attributes=True, check_existing=False)
+    export = partial(bpy.ops.wm.ply_export, export_colors="SRGB", export_attributes=True, check_existing=False)
+    write_surely(lambda: export(filepath=str(path)), path)
 
 
 def _read_stl(path: Path) -> None:

@@ -21,9 +21,9 @@ from pathlib import Path
 import bpy
 
 from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
-from .atomic_write import discard
+from .atomic_write import remove_stale
 from .jobs import Job
-from .report import Report, path_beside, without_version
+from .report import Report, without_version
 from .run_serial import failed_report
 
 # A process does up to so many files, as it takes a second or two to start.
@@ -195,8 +195,8 @@ def _arguments_of(options: argparse.Namespace) -> list[str]:
     given = vars(options) | {"source": options.source and options.source.absolute()}
     values = {name: given[key] for name, key in OPTIONS.items() if given.get(key) is not None}
     layers = [f"--layers={','.join(options.layers)}"] if command == "transfer" else []
-    mirrored = ["--mirrored"] if options.mirrored else []
-    return [command, *(f"{name}={value}" for name, value in values.items()), *layers, *mirrored]
+    switches = [f"--{name}" for name in ("mirrored", "overwrite") if getattr(options, name)]
+    return [command, *(f"{name}={value}" for name, value in values.items()), *layers, *switches]
 
 
 def own_command() -> list[str]:
@@ -223,8 +223,7 @@ def _units(jobs: Sequence[Job], size: int) -> Iterator[Unit]:
 
 def _clear_up(job: Job) -> None:
     """Remove what a process left that ended while it wrote a result."""
-    discard(job.target)
-    discard(path_beside(job.target))
+    remove_stale(job.target.parent)
 
 
 def _reports_in(text: str) -> list[Report]:

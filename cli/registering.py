@@ -18,9 +18,9 @@ from ..operators.registration.match_options import MatchOptions
 from ..operators.registration.mesh_registration import SharedParts
 from ..operators.registration.shape_registration import PreparedReference
 from . import formats
+from .digests import digest_of
 from .objects import analysis_settings, chosen_objects, report_each, row_of
 from .report import ObjectRow, Settings
-from .resume import digest_of
 from .segmenting import choice_of
 
 

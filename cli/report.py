@@ -11,7 +11,6 @@ from ..compute.errors import EngineError
 from ..compute.registration.parts.transferred_labels import FaceLabels
 from ..compute.segmentation.parts.part_labels import BranchLabels
 from ..operators.messages.user_errors import Refusal
-from .atomic_write import staged
 from .part_names import name_of_part, names_of_parts
 
 # Raised when the layout of the report changes; report.schema.json describes it.
@@ -51,9 +50,21 @@ class ObjectRow(TypedDict):
     reference: NotRequired[str]
 
 
+class Written(TypedDict):
+    """The files that were written together, by which it is known later whether they are still as they were written."""
+
+    # Of the input, from the folder of the result.
+    source: str
+    # Digests by name: of the result and of what belongs to it.
+    files: dict[str, str]
+    # While files are exchanged: of those that are replaced.
+    before: NotRequired[dict[str, str]]
+
+
 class Report(TypedDict):
     """A file; ``output`` if a result was written."""
 
+    version: NotRequired[int]
     file: str
     error: NotRequired[str]
     seconds: NotRequired[float]
@@ -61,6 +72,9 @@ class Report(TypedDict):
     settings: NotRequired[Settings]
     objects: NotRequired[list[ObjectRow]]
     output: NotRequired[str]
+    warnings: NotRequired[list[str]]
+    # Kept with the result only.
+    written: NotRequired[Written]
     # Of a batch: whether the result was there before.
     skipped: NotRequired[bool]
 
@@ -101,12 +115,6 @@ def path_beside(target: Path) -> Path:
     return target.with_name(target.name + ".json")
 
 
-def write_beside(target: Path, report: Report) -> None:
-    """Keep a report with its result."""
-    with staged(path_beside(target)) as stage:
-        stage.write_text(as_line(report) + "\n", encoding="utf-8")
-
-
 def as_line(report: Report) -> str:
     """Return the report of one file as JSON on one line."""
     return json.dumps({"version": VERSION, **report})
@@ -120,7 +128,8 @@ def as_document(reports: list[Report]) -> str:
 def sentence(report: Report) -> str:
     """Return a line for people about a file that went well."""
     counts = ", ".join(_counts(row) for row in report["objects"] if "error" not in row)
-    return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}"
+    warnings = "".join(f"; {warning}" for warning in report.get("warnings", []))
+    return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}{warnings}"
 
 
 def _counts(row: ObjectRow) -> str:

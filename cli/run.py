@@ -1,17 +1,17 @@
 """Run a command: find its files, do them here or in processes, and report each."""
 
 import argparse
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from itertools import chain
 from typing import TextIO
 
 from ..operators.messages.user_errors import Refusal
 from . import batch
 from .formats import name_of_divided, name_of_transferred
-from .jobs import Job, conflicting_jobs, jobs_of_files
+from .jobs import Job, jobs_of_files, refused_jobs
 from .process_pool import cluster_pool, local_pool
 from .registering import Register
-from .report import Report
+from .report import Report, problem_of
 from .reporters import ProgressLine, reporter_for
 from .run_serial import Command, failed_report, run_in_this_process
 from .segmenting import Segment
@@ -25,6 +25,9 @@ def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
         return do(options, out, err)
     except Refusal as refusal:
         err.write(f"{refusal}\n")
+    except OSError as error:
+        # What is told goes into a file on a full disk, or to a program that has ended.
+        err.write(f"{problem_of(error)}\n")
     except KeyboardInterrupt:
         err.write("Interrupted; what is finished stays.\n")
     return 1
@@ -33,7 +36,7 @@ def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
 def _run_files(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do the files that were named, tell about each, and return 1 if any failed."""
     name_of_result = name_of_transferred if options.command == "transfer" else name_of_divided
-    jobs = jobs_of_files(options.files, options.output, name_of_result)
+    jobs = jobs_of_files(options.files, options.output, name_of_result, overwrite=options.overwrite)
     return _report_all(_reports(jobs, options), options, out, err)
 
 
@@ -41,9 +44,8 @@ def _run_batch(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do what is not finished below the folders that were named, tell about each file, and return 1 if any failed."""
     jobs = batch.find_jobs(options)
     finished = {} if options.again else batch.finished_reports(jobs, _command(options).settings)
-    unfinished = [job for job in jobs if job not in finished]
-    line = ProgressLine(err, len(unfinished), len(finished))
-    return _report_all(chain(finished.values(), line.counting(_reports(unfinished, options))), options, out, err)
+    line = ProgressLine(err, len(jobs) - len(finished), len(finished))
+    return _report_all(chain(finished.values(), line.counting(_reports(jobs, options, finished))), options, out, err)
 
 
 def _report_all(reports: Iterable[Report], options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
@@ -57,12 +59,14 @@ def _report_all(reports: Iterable[Report], options: argparse.Namespace, out: Tex
     return int(any_failed)
 
 
-def _reports(jobs: list[Job], options: argparse.Namespace) -> Iterator[Report]:
-    """Yield the report of each file when it is done."""
-    blocked = conflicting_jobs(jobs)
-    for job, earlier in blocked.items():
-        yield failed_report(job, f"its result would replace that of {earlier}; give them different folders.")
-    free = [job for job in jobs if job not in blocked]
+def _reports(jobs: list[Job], options: argparse.Namespace, finished: Container[Job] = ()) -> Iterator[Report]:
+    """Yield the report of each file that is not finished when it is done."""
+    refused = refused_jobs(jobs, [job.path for job in jobs] + ([options.source] if options.source else []))
+    unfinished = [job for job in jobs if job not in finished]
+    for job in unfinished:
+        if job in refused:
+            yield failed_report(job, refused[job])
+    free = [job for job in unfinished if job not in refused]
     if options.scheduler:
         with cluster_pool(options) as pool:
             yield from pool.run(free)

@@ -1,17 +1,19 @@
 """Do one file after the other in this process: open, divide, write, tell."""
 
+import re
 import time
-from collections.abc import Callable, Iterable, Iterator
-from functools import partial
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Protocol
 
 from ..operators.messages.user_errors import Refusal
 from . import formats
+from .atomic_write import check_room, remove_stale, stage_in
+from .digests import digest_of
 from .jobs import Job
-from .report import ObjectRow, Report, Settings, path_beside, problem_of, problems_of, write_beside
-from .resume import digest_of
+from .report import ObjectRow, Report, Settings, problem_of, problems_of
 from .suppress_output import blender_is_quiet
+from .targets import publish, refuse_before_work
 
 
 class Command(Protocol):
@@ -27,8 +29,11 @@ class Command(Protocol):
 
 def run_in_this_process(jobs: Iterable[Job], command: Command) -> Iterator[Report]:
     """Yield a report for each file when it is done."""
+    jobs = list(jobs)
+    for folder in dict.fromkeys(job.target.parent for job in jobs):
+        remove_stale(folder)
     for job in jobs:
-        yield _report(job, partial(_do, job, command))
+        yield _report(job, command)
 
 
 def failed_report(job: Job, problem: str) -> Report:
@@ -36,32 +41,49 @@ def failed_report(job: Job, problem: str) -> Report:
     return {"file": str(job.path), "error": problem, "seconds": 0.0}
 
 
-def _report(job: Job, work: Callable[[], Report]) -> Report:
+def _report(job: Job, command: Command) -> Report:
     start = time.perf_counter()
-    report: Report = {"file": str(job.path)}
     try:
         with blender_is_quiet():
-            report = work()
-            report["seconds"] = round(time.perf_counter() - start, 3)
-            if "output" in report:
-                write_beside(job.target, report)
+            return _do(job, command, start)
     except Exception as error:
         # One broken file must not take the batch down, whatever Blender or the file does.
-        report["error"], report["seconds"] = problem_of(error), round(time.perf_counter() - start, 3)
-    return report
+        return {"file": str(job.path), "error": problem_of(error), "seconds": _seconds_since(start)}
 
 
-def _do(job: Job, command: Command) -> Report:
+def _do(job: Job, command: Command, start: float) -> Report:
     if not job.path.is_file():
         raise Refusal("there is no such file.")
+    refuse_before_work(job)
     report: Report = {"file": str(job.path), "digest": digest_of(job.path), "settings": command.settings}
     report["objects"] = command.open_and_process(job.path)
     if problems := problems_of(report["objects"]):
         report["error"] = problems
     if any("error" not in row for row in report["objects"]):
-        job.target.parent.mkdir(parents=True, exist_ok=True)
-        # Without its report a result counts as unfinished, should anything happen from here on.
-        path_beside(job.target).unlink(missing_ok=True)
-        formats.save(job.target)
-        report["output"] = str(job.target)
+        _write(job, report, start)
+    else:
+        report["seconds"] = _seconds_since(start)
     return report
+
+
+def _write(job: Job, report: Report, start: float) -> None:
+    with stage_in(job.target.absolute().parent) as stage:
+        _save(stage / job.target.name)
+        report["output"], report["seconds"] = str(job.target), _seconds_since(start)
+        publish(job, stage, report)
+
+
+def _save(path: Path) -> None:
+    try:
+        formats.save(path)
+    except RuntimeError as error:
+        check_room(path.parent)
+        # What is wrong stands at the end of what the exporters of Blender say, behind the name of a class.
+        lines = [line.strip() for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
+        cause = re.sub(r"^(\w*Error: |\[Errno \d+\] )+", "", lines[-1]).rstrip(".")
+        raise Refusal(f"Blender could not write {path.name}: {cause}; is there room on the disk?") from error
+    check_room(path.parent)
+
+
+def _seconds_since(start: float) -> float:
+    return round(time.perf_counter() - start, 3)

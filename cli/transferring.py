@@ -16,9 +16,9 @@ from ..operators.transfer.layer_mapping import MappedLayers, map_to_all
 from ..operators.transfer.layer_reading import LayerChoice
 from ..operators.transfer.mesh_transfer import TransferSettings, TransferSource
 from . import formats
+from .digests import digest_of
 from .objects import chosen_objects, report_each
 from .report import ObjectRow, Settings
-from .resume import digest_of
 
 
 class Transfer:

@@ -1,65 +1,122 @@
-"""A file is there as a whole or not at all."""
+"""Stages: where a result is written until it is whole."""
 
-from importlib import import_module
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
-from tools.extension import load_extension
+from tests.cli.writing import cli
+
+# Holds a stage in a folder until it is told to end.
+HOLDER = """
+import sys
+from pathlib import Path
+from tests.cli.writing import cli
+with cli("atomic_write").stage_in(Path(sys.argv[1])) as stage:
+    (stage / "half").touch()
+    print(stage.name, flush=True)
+    sys.stdin.read()
+"""
 
 
 @pytest.fixture(scope="module")
 def atomic_write():
-    load_extension()
-    return import_module("eigenparts.cli.atomic_write")
+    return cli("atomic_write")
 
 
-def texts_in(folder):
-    return {path.name: path.read_text() for path in folder.iterdir() if path.is_file()}
+@pytest.fixture
+def other_run(tmp_path):
+    """Another process that writes into the folder; yields it and its stage."""
+    command = [sys.executable, "-c", HOLDER, str(tmp_path)]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, cwd=Path(__file__).parents[2], **pipes) as process:
+        yield process, tmp_path / process.stdout.readline().strip()
+        process.kill()
 
 
-def test_what_is_written_beside_a_file_comes_with_it(atomic_write, tmp_path):
-    with atomic_write.staged(tmp_path / "star.obj") as stage:
-        stage.write_text("faces")
-        stage.with_name("star.mtl").write_text("colours")
-        assert texts_in(tmp_path) == {}
-    assert texts_in(tmp_path) == {"star.obj": "faces", "star.mtl": "colours"}
-    assert len(list(tmp_path.iterdir())) == 2
+def names_in(folder):
+    return sorted(path.name for path in folder.iterdir())
 
 
 @pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
-def test_whatever_happens_meanwhile_the_old_file_stays(atomic_write, tmp_path, error):
-    (tmp_path / "star.obj").write_text("old")
-
+def test_a_stage_leaves_nothing(atomic_write, tmp_path, error):
     def write_half():
-        with atomic_write.staged(tmp_path / "star.obj") as stage:
-            stage.write_text("half of the fac")
+        with atomic_write.stage_in(tmp_path) as stage:
+            (stage / "star.obj").write_text("half of the fac")
+            assert len(names_in(tmp_path)) == 1
             raise error
 
     with pytest.raises(error):
         write_half()
-    assert texts_in(tmp_path) == {"star.obj": "old"}
-    assert len(list(tmp_path.iterdir())) == 1
+    assert names_in(tmp_path) == []
 
 
-def test_the_file_itself_comes_last(atomic_write, tmp_path, monkeypatch):
-    """Whoever sees a file finds what belongs to it, so a process that is killed between the two leaves no lone one."""
-    order = []
-    replace = atomic_write.os.replace
-    monkeypatch.setattr(atomic_write.os, "replace", lambda part, goal: (order.append(goal.name), replace(part, goal)))
-    with atomic_write.staged(tmp_path / "a.obj") as stage:
-        for name in ("a.obj", "z.mtl", "A.png"):
-            stage.with_name(name).touch()
-    assert order[-1] == "a.obj"
-    assert len(order) == 3
+def test_a_stage_is_hidden_and_short_whatever_the_name_of_the_result(atomic_write, tmp_path):
+    with atomic_write.stage_in(tmp_path) as stage, atomic_write.stage_in(tmp_path) as other:
+        assert stage != other
+        assert stage.name.startswith(".")
+        assert len(stage.name) < 32
+        assert atomic_write.files_in(stage) == []
 
 
-def test_what_a_killed_process_left_is_no_part_of_the_next_result(atomic_write, tmp_path):
-    with atomic_write.staged(tmp_path / "star.obj") as stage:
-        left = stage.parent
-        stage.touch()
-    left.mkdir()
-    (left / "left.mtl").touch()
-    with atomic_write.staged(tmp_path / "star.obj") as stage:
-        stage.write_text("new")
-    assert texts_in(tmp_path) == {"star.obj": "new"}
-    assert not left.exists()
+def test_the_stage_of_a_process_at_work_stays_and_that_of_one_that_was_killed_goes(atomic_write, other_run):
+    process, stage = other_run
+    atomic_write.remove_stale(stage.parent)
+    assert (stage / "half").exists()
+    process.kill()
+    process.wait()
+    atomic_write.remove_stale(stage.parent)
+    assert names_in(stage.parent) == []
+
+
+def test_a_stage_without_a_word_in_it_goes_and_the_folders_of_the_user_stay(atomic_write, tmp_path):
+    """A process may be killed before it marks its stage; names of stages are no names that anybody thinks of."""
+    with atomic_write.stage_in(tmp_path) as stage:
+        pass
+    stage.mkdir()
+    mine = [
+        tmp_path / ".eigenparts-empty",
+        tmp_path / ".eigenparts-star_parts.off",
+        tmp_path / ".eigenparts-0123456789abcdef",
+    ]
+    for folder in mine:
+        folder.mkdir()
+    (mine[1] / "notes").touch()
+    (tmp_path / ".eigenparts-link").symlink_to(mine[1])
+    atomic_write.remove_stale(tmp_path)
+    assert names_in(tmp_path) == sorted([*(folder.name for folder in mine), ".eigenparts-link"])
+    assert names_in(mine[1]) == ["notes"]
+
+
+def test_a_file_system_without_locks_is_written_to_and_nothing_on_it_counts_as_stale(
+    atomic_write, tmp_path, monkeypatch
+):
+    def lock_nothing(descriptor, operation):
+        raise OSError(37, "No locks available")
+
+    monkeypatch.setattr(cli("locks").fcntl, "flock", lock_nothing)
+    with atomic_write.stage_in(tmp_path) as stage:
+        atomic_write.remove_stale(tmp_path)
+        assert stage.exists()
+
+
+def test_a_folder_that_another_run_holds_is_waited_for_and_told_of(tmp_path, monkeypatch):
+    locks = cli("locks")
+    monkeypatch.setattr(locks, "PATIENCE", 0.1)
+    with locks.folder_lock(tmp_path), pytest.raises(TimeoutError, match="another run"), locks.folder_lock(tmp_path):
+        pass
+    with locks.folder_lock(tmp_path), locks.folder_lock(tmp_path / "missing"):
+        pass
+
+
+def test_what_an_exporter_does_not_tell_is_noticed(atomic_write, tmp_path):
+    """One of two times it writes less."""
+    texts = iter(["all of it", "all of"])
+    with atomic_write.stage_in(tmp_path) as stage:
+        path = stage / "star.obj"
+        with pytest.raises(OSError, match="as a whole"):
+            atomic_write.write_surely(lambda: path.write_text(next(texts)), path)
+        atomic_write.write_surely(lambda: path.write_text("all of it"), path)
+    assert os.listdir(tmp_path) == []

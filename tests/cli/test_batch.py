@@ -1,6 +1,8 @@
 """The command ``batch``: all files of folders, what is finished is left alone, and nothing is half written."""
 
 import gc
+import io
+import json
 import os
 import resource
 import shutil
@@ -53,19 +55,15 @@ def test_finished_files_are_skipped(run, folder):
     "change",
     [
         lambda folder: write_off(star(4, 3), folder / "a.off"),
-        lambda folder: (folder / "a_parts.off.json").unlink(),
-        lambda folder: (folder / "a_parts.off.json").write_text('{"version": 1, "objects": ['),
-        lambda folder: (folder / "a_parts.off.json").write_text("[1]"),
         lambda folder: (folder / "a_parts.off").unlink(),
-        lambda folder: os.truncate(folder / "a_parts.off", 0),
     ],
-    ids=["other input", "no report", "broken report", "no report at all", "no result", "empty result"],
+    ids=["other input", "no result"],
 )
-def test_what_is_not_what_its_report_says_is_done_again(run, folder, change):
+def test_what_would_come_out_otherwise_is_done_again(run, folder, change):
     run("batch", folder)
     before = results_in(folder)
     change(folder)
-    run("batch", folder)
+    assert run("batch", folder)[0] == 0
     after = results_in(folder)
     assert [name for name in after if after[name] != before[name]] == ["a_parts.off"]
 
@@ -154,14 +152,6 @@ def test_a_result_that_finds_no_room_leaves_the_old_one(run, tmp_path, suffix, r
     assert sorted(path.name for path in tmp_path.iterdir() if "parts" in path.name) == [result.name]
 
 
-def test_what_a_killed_process_left_is_removed(run, folder):
-    left = folder / ".eigenparts-a_parts.off"
-    left.mkdir()
-    (left / "a_parts.off").write_text("OFF\n")
-    run("batch", folder)
-    assert not left.exists()
-
-
 def test_textures_are_found_from_the_result(run, tmp_path):
     add_object(star(3, 2))
     image = bpy.data.images.new("skin", 4, 4)
@@ -182,3 +172,68 @@ def test_textures_are_found_from_the_result(run, tmp_path):
 def test_an_empty_folder_is_told(run, tmp_path):
     assert run("batch", tmp_path)[0] == 1
     assert "no such folder" in run("batch", tmp_path / "missing")[2][0]
+
+
+def test_a_file_of_the_user_that_is_called_like_a_result_is_a_source(run, folder):
+    mine = write_off(star(6, 2), folder / "a_parts.off")
+    before = mine.read_bytes()
+    code, lines, errors = run("batch", folder)
+    assert (code, len(lines)) == (1, 3)
+    assert sum(line.startswith(f"{folder / 'a.off'}: its result would replace {mine}") for line in errors) == 1
+    assert (mine.read_bytes(), (folder / "a_parts_parts.off").is_file()) == (before, True)
+    code, _, errors = run("batch", folder, "--overwrite", "--jobs", 1)
+    assert (code, mine.read_bytes()) == (1, before)
+    assert (code, len(errors)) == (1, 3)
+
+
+def test_a_result_that_was_changed_is_told_and_may_be_overwritten(run, folder):
+    run("batch", folder)
+    whole = (folder / "a_parts.off").read_bytes()
+    os.truncate(folder / "a_parts.off", 0)
+    code, lines, errors = run("batch", folder)
+    assert (code, lines) == (1, [])
+    assert f"{folder / 'a_parts.off'} is changed since it was written" in "".join(errors)
+    assert run("batch", folder, "--overwrite", "--jobs", 1)[0] == 0
+    assert (folder / "a_parts.off").read_bytes() == whole
+
+
+@pytest.mark.parametrize("text", ['{"version": 1, "objects": [', "[1]", "5"])
+def test_a_damaged_report_costs_no_more_than_doing_its_file_again(run, folder, text):
+    run("batch", folder)
+    before = results_in(folder)
+    (folder / "a_parts.off.json").write_text(text)
+    code, lines, _ = run("batch", folder)
+    assert (code, len(lines), results_in(folder)) == (0, 1, before)
+    assert lines[0].endswith(f"; {folder / 'a_parts.off.json'} is no report, and stays as it is")
+
+
+def test_one_folder_under_several_names_is_one(run, folder, tmp_path):
+    (tmp_path / "link").symlink_to(folder)
+    names = [folder, tmp_path / "link", folder / "deep", folder / "deep" / ".."]
+    code, lines, _ = run("batch", *names, "--output", tmp_path / "out")
+    assert (code, len(lines)) == (0, 3)
+    assert sorted(results_in(tmp_path / "out")) == ["a_parts.off", "b_parts.off", "deep/down/c_parts.off"]
+    assert run("batch", *reversed(names), "--output", tmp_path / "out")[2] == ["0 of 0 files (3 finished before)"]
+
+
+@pytest.mark.parametrize("uri", [5, None, [1], "a\0b", "x" * 5000, ".", "../../../x"])
+def test_a_gltf_with_nonsense_for_buffers_fails_alone(run, folder, uri):
+    table = {"asset": {"version": "2.0"}, "buffers": [{"uri": uri, "byteLength": 4}]}
+    (folder / "bad.gltf").write_text(json.dumps(table))
+    for _ in range(2):
+        code, _, errors = run("batch", folder)
+        assert code == 1
+        assert [line for line in errors if ".gltf: " in line] == [line for line in errors if " files" not in line]
+    assert len(results_in(folder)) == 3
+
+
+def test_a_full_disk_that_takes_no_words_is_told(run, star_off, monkeypatch):
+    """What is told goes into a file there."""
+
+    class Full(io.StringIO):
+        def write(self, text):
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("sys.stdout", Full())
+    code, _, errors = run("segment", star_off, "--json-lines")
+    assert (code, errors) == (1, ["No space left on device."])

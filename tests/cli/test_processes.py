@@ -26,7 +26,9 @@ for file in sys.argv[sys.argv.index("--") + 1:]:
         once.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     if "endless" in file:
-        pathlib.Path(file).with_name(".eigenparts-" + pathlib.Path(file).stem + "_parts.off").mkdir()
+        left = pathlib.Path(file).with_name(".eigenparts-" + pathlib.Path(file).stem)
+        left.mkdir()
+        (left / ".eigenparts-stage").touch()
         time.sleep(600)
     print("Blender says something")
     print(json.dumps({"version": 1, "file": file, "error": "done by the stand-in.", "seconds": 0.0}), flush=True)
@@ -178,8 +180,7 @@ def test_a_process_killed_while_it_writes_leaves_the_old_result_or_the_new_one(r
     run("segment", source)
     known = {source.read_bytes(), result.read_bytes()}
     again = command_line("segment", source, "--level", 2)
-    stage = tmp_path / ".eigenparts-star_parts.blend"
-    while again.poll() is None and not stage.exists():
+    while again.poll() is None and not list(tmp_path.glob(".eigenparts-*")):
         time.sleep(0.001)
     again.kill()
     again.communicate()
