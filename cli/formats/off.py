@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +13,8 @@ from ...operators.messages.user_errors import Refusal
 
 # Some writers leave out the keyword, the space behind it or the number of edges.
 HEAD = re.compile(
-    r"\s*(?P<keyword>(?P<st>ST)?(?P<c>C)?(?P<n>N)?(?P<w>4)?(?P<dim>n)?OFF)?(?(dim)\s*(?P<dimensions>\d+)\s)"
-    r"\s*(?P<vertices>\d+)\s+(?P<faces>\d+)(?:[ \t]+\d+(?=\s|\Z)|[ \t]*\n\s*\d+[ \t]*(?=\n|\Z))?"
+    r"\s*(?P<keyword>(?P<st>ST)?(?P<c>C)?(?P<n>N)?(?P<w>4)?(?P<dim>n)?OFF)?(?(dim)\s*(?P<dimensions>\d{1,9})\s)"
+    r"\s*(?P<vertices>\d{1,12})\s+(?P<faces>\d{1,12})(?:[ \t]+\d+(?=\s|\Z)|[ \t]*\n\s*\d+[ \t]*(?=\n|\Z))?"
 )
 BINARY = re.compile(rb"\s*(ST)?(C)?(N)?(4)?OFF[ \t]+BINARY[^\n]*\n")
 # Numbers that are none, as some systems write them; their sign # would begin a comment.
@@ -75,10 +76,10 @@ def parse_off(data: bytes) -> OffFile:
     if binary is not None:
         return _parse_binary(data[binary.end() :], *(part is not None for part in binary.groups()))
     text = _text_of(data)
-    for layout in (_one_on_each_line, _each_face_on_a_line, _on_any_lines):
+    for layout, width in product((_one_on_each_line, _each_face_on_a_line, _on_any_lines), text.widths):
         try:
-            return layout(text)
-        except (ValueError, IndexError, OverflowError, DeprecationWarning):
+            return layout(text, width)
+        except (ValueError, IndexError, OverflowError):
             continue
     raise Refusal(_objection(text))
 
@@ -109,37 +110,31 @@ def _decoded(data: bytes) -> str:
     return data.removeprefix(b"\xef\xbb\xbf").decode("latin-1")
 
 
-def _one_on_each_line(text: _Text) -> OffFile:
-    """Read each point and each face from a line of its own, with anything behind it."""
+def _one_on_each_line(text: _Text, width: int) -> OffFile:
+    """Read each point and each face from a line of its own, with anything behind it, whatever the width."""
     end = text.n_vertices + text.n_faces
     if len(text.lines) < end:
         raise ValueError(end)
-    rows = _numbers(text.lines[: text.n_vertices], range(text.n_coordinates), np.float64)
+    rows = _numbers(text.lines[: text.n_vertices], range(text.n_coordinates))
     return OffFile(_places(rows), *_faces_of_lines(text.lines[text.n_vertices : end]))
 
 
-def _each_face_on_a_line(text: _Text) -> OffFile:
+def _each_face_on_a_line(text: _Text, width: int) -> OffFile:
     """Read points from any lines, and then each face from a line of its own, with its colour behind it."""
     end = len(text.lines) - text.n_faces
-    if end < 0:
-        raise ValueError(end)
-    values = np.array(" ".join(text.lines[:end]).split(), dtype=np.float64)
-    for width in text.widths:
-        if width * text.n_vertices == len(values):
-            return OffFile(_places(_rows_of(values, text, width)), *_faces_of_lines(text.lines[end:]))
-    raise ValueError(len(values))
+    values = np.array(" ".join(text.lines[: max(end, 0)]).split(), dtype=np.float64)
+    return OffFile(_places(_rows_of(values, text, width)), *_faces_of_lines(text.lines[end:] if text.n_faces else []))
 
 
-def _on_any_lines(text: _Text) -> OffFile:
+def _on_any_lines(text: _Text, width: int) -> OffFile:
     """Read all numbers one after the other; the faces have no colours then."""
     values = np.array(" ".join(text.lines).split(), dtype=np.float64)
-    for width in text.widths:
-        faces = values[width * text.n_vertices :].astype(np.int64)
-        n_corners, starts = _walk(faces, text.n_faces)
-        if starts[-1] == len(faces):
-            corners = np.delete(faces, starts[:-1])
-            return OffFile(_places(_rows_of(values, text, width)), n_corners, corners)
-    raise ValueError(len(values))
+    end = width * text.n_vertices
+    faces = _whole(values[end:])
+    n_corners, starts = _walk(faces, text.n_faces)
+    if starts[-1] != len(faces):
+        raise ValueError(len(faces))
+    return OffFile(_places(_rows_of(values[:end], text, width)), n_corners, np.delete(faces, starts[:-1]))
 
 
 def _walk(faces: NDArray[np.int64], n_faces: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -152,31 +147,38 @@ def _walk(faces: NDArray[np.int64], n_faces: int) -> tuple[NDArray[np.int64], ND
 
 
 def _rows_of(values: NDArray[np.float64], text: _Text, width: int) -> NDArray[np.float64]:
-    return values[: width * text.n_vertices].reshape(text.n_vertices, width)[:, : text.n_coordinates]
+    return values.reshape(text.n_vertices, width)[:, : text.n_coordinates]
 
 
 def _faces_of_lines(lines: list[str]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return how many corners the face of each line has, and the corners of all."""
     n_corners = np.array([line.split(None, 1)[0] for line in lines], dtype=np.int64)
-    if (n_corners < 0).any():
-        raise ValueError(n_corners.min())
+    if (n_corners < 0).any() or (n_corners > max(map(len, lines), default=0)).any():
+        raise ValueError("no count")
     starts = np.cumsum(n_corners) - n_corners
     corners = np.empty(int(n_corners.sum()), dtype=np.int64)
     for size in np.unique(n_corners).tolist():
         chosen = np.flatnonzero(n_corners == size)
-        rows = _numbers([lines[i] for i in chosen.tolist()], range(1, 1 + size), np.int64)
+        rows = _whole(_numbers([lines[i] for i in chosen.tolist()], range(1, 1 + size)))
         corners[(starts[chosen][:, None] + np.arange(size)).ravel()] = rows.ravel()
     return n_corners, corners
 
 
-def _numbers(lines: list[str], columns: range, dtype: type) -> NDArray[np.generic]:
+def _numbers(lines: list[str], columns: range) -> NDArray[np.float64]:
     """Return some columns of the numbers on lines; raises a ValueError if one is missing."""
     if not lines or not columns:
-        return np.empty((len(lines), len(columns)), dtype=dtype)
-    return np.loadtxt(lines, dtype=dtype, usecols=tuple(columns), comments=None, ndmin=2)
+        return np.empty((len(lines), len(columns)))
+    return np.loadtxt(lines, usecols=tuple(columns), comments=None, ndmin=2)
 
 
-def _places(rows: NDArray[np.generic]) -> NDArray[np.float64]:
+def _whole(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return numbers of points as such; raises a ValueError if one is not whole."""
+    if not (values == np.rint(values)).all():
+        raise ValueError("not whole")
+    return values.astype(np.int64)
+
+
+def _places(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return (V, 3) the places of points; where there is a fourth coordinate, the others are divided by it."""
     with np.errstate(all="ignore"):
         return rows[:, :3] / rows[:, 3:4] if rows.shape[1] == 4 else rows
@@ -199,6 +201,8 @@ def _binary_faces(words: list[int], n_faces: int) -> tuple[NDArray[np.int64], ND
     for _ in range(n_faces):
         size = words[place]
         end = place + 1 + size
+        if size < 0 or words[end] < 0:
+            raise ValueError(size)
         n_corners.append(size)
         corners += words[place + 1 : end]
         # Behind the corners stand the number of its colours and the colours.

@@ -18,8 +18,8 @@ from .off import OffFile, parse_off
 from .repairs import MOVED, Repairs, move_to_neighbours
 
 LEFT_OUT = (
-    "{} of {} faces cannot be divided: they have fewer than 3 corners, repeat a corner or another face, or name points"
-    " that do not exist; their lines in the result have the color of what is beside them."
+    "Faces that cannot be divided: {} of {}; they have fewer than 3 corners, repeat a corner or another face, or name"
+    " points that do not exist. Their lines in the result have the color of what is around their first point."
 )
 # While the mesh is made: the line of the file that each face comes from.
 LINE = "line of the file"

@@ -15,9 +15,10 @@ from ...operators.messages.user_errors import Refusal
 Repairs = dict[str, list[str]]
 WHOLE_FILE = ""
 MOVED = (
-    "{} points are no numbers in the file; each was put in the middle of its neighbours, or at the origin if it has none."
+    "Points that are no numbers in the file: {}; each was put in the middle of its neighbours, or at the origin if it has"
+    " none."
 )
-NO_NUMBERS = "{} points of the mesh {!r} are no numbers; repair the file in the program that wrote it."
+NO_NUMBERS = "the mesh {!r} has points that are no numbers ({}); repair the file in the program that wrote it."
 OTHER_FACES = (
     "The file lists {} faces and the mesh has {}: faces that repeat a corner or another face, or that name points that do"
     " not exist, cannot be held."
@@ -65,7 +66,7 @@ def refuse_no_numbers(counts: dict[str, int]) -> None:
     """Raise a Refusal if a mesh has points that are no numbers, in a format that cannot be mended."""
     for name, count in counts.items():
         if count:
-            raise Refusal(NO_NUMBERS.format(count, name))
+            raise Refusal(NO_NUMBERS.format(name, count))
 
 
 def _filled(places: NDArray[np.float32], is_lost: NDArray[np.bool_], edges: NDArray[np.int64]) -> NDArray[np.float32]:
