@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +15,12 @@ import numpy as np
 from .fbx_animation import stacks_written_once
 from .part_materials import give_parts_materials
 from .repairs import OTHER_FACES, WHOLE_FILE, Repairs, refuse_no_numbers
+
+# What a file that is damaged, or no binary one, can raise; the importer is asked then, and says what is wrong.
+DAMAGED = (
+    *(OSError, ValueError, LookupError, TypeError, AttributeError, AssertionError, EOFError, ImportError),
+    *(struct.error, zlib.error),
+)
 
 
 def read_fbx(path: Path) -> Repairs:
@@ -49,13 +57,15 @@ def _shapes(path: Path) -> Iterator[tuple[str, int, int]]:
         objects = [part for part in root.elems if part.id == b"Objects"]
         shapes = [shape for part in objects for shape in part.elems if shape.id == b"Geometry"]
         found = [_shape(shape) for shape in shapes if shape.props[-1] == b"Mesh"]
-    except Exception:  # noqa: BLE001
+    except DAMAGED:
         return
     yield from found
 
 
 def _shape(shape: Any) -> tuple[str, int, int]:
-    arrays = {part.id: np.asarray(part.props[0]) for part in shape.elems if part.id in (b"Vertices", b"PolygonVertexIndex")}
+    arrays = {
+        part.id: np.asarray(part.props[0]) for part in shape.elems if part.id in (b"Vertices", b"PolygonVertexIndex")
+    }
     places, corners = arrays.get(b"Vertices", np.empty(0)), arrays.get(b"PolygonVertexIndex", np.empty(0))
     n_bad = int((~np.isfinite(places.reshape(-1, 3)).all(axis=1)).sum())
     return shape.props[1].split(b"\x00")[0].decode("utf-8", "replace"), n_bad, int((corners < 0).sum())

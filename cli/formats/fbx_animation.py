@@ -17,7 +17,7 @@ from typing import Any
 
 import bpy
 
-from ...operators.blender.known_values import mesh_of
+from ...operators.blender.known_values import present
 
 # Frames between two stacks.
 GAP = 10
@@ -101,7 +101,8 @@ def _is_made_for(action: bpy.types.Action, owner: Owner) -> bool:
         return action.slots[0].target_id_type == owner.id_type
     # Until Blender 4.3 an action does not know what it moves.
     try:
-        owner.path_resolve(action.fcurves[0].data_path)
+        curves: Any = getattr(action, "fcurves", ())
+        owner.path_resolve(curves[0].data_path)
     except (IndexError, ValueError):
         return False
     return True
@@ -114,22 +115,24 @@ def _name_of_stack(action: bpy.types.Action) -> str:
 
 
 def _add_carrier(owners: dict[Owner, bpy.types.Action]) -> None:
-    """Let an object without keys of its own carry a stack of shape keys or cameras, as only objects' strips are written."""
+    """Let an object carry a stack of shape keys or cameras alone, as only strips of objects are written."""
     if not any(isinstance(owner, bpy.types.Object) for owner in owners):
         data = next(iter(owners))
-        carriers = (obj for obj in bpy.data.objects if obj.data == data or getattr(obj.data, "shape_keys", None) == data)
+        carriers = (
+            obj for obj in bpy.data.objects if obj.data == data or getattr(obj.data, "shape_keys", None) == data
+        )
         owners[next(carriers)] = bpy.data.actions.new("carrier")
 
 
 def _stop(owner: Owner) -> None:
-    data = owner.animation_data or owner.animation_data_create()
+    data = present(owner.animation_data or owner.animation_data_create())
     data.action = None
     for track in list(data.nla_tracks):
         data.nla_tracks.remove(track)
 
 
 def _strip(owner: Owner, action: bpy.types.Action, name: str, first: int) -> bpy.types.NlaStrip:
-    data = owner.animation_data or owner.animation_data_create()
+    data = present(owner.animation_data or owner.animation_data_create())
     strip = data.nla_tracks.new().strips.new(name, first, action)
     strip.name, strip.extrapolation = name, "NOTHING"
     if getattr(action, "slots", ()):

@@ -11,6 +11,7 @@ from urllib.parse import unquote
 
 import bpy
 import numpy as np
+from numpy.typing import NDArray
 
 from .part_materials import give_parts_materials, has_colours_of_user
 from .repairs import OTHER_FACES, Repairs, refuse_no_numbers
@@ -87,8 +88,12 @@ class _Contents:
         }
 
     def _meshes(self) -> list[tuple[str, list[dict[str, Any]]]]:
-        named = [(mesh.get("name") or f"Mesh_{number}", mesh) for number, mesh in enumerate(self._table.get("meshes", ()))]
-        return [(name, [part for part in mesh["primitives"] if "POSITION" in part["attributes"]]) for name, mesh in named]
+        named = [
+            (mesh.get("name") or f"Mesh_{number}", mesh) for number, mesh in enumerate(self._table.get("meshes", ()))
+        ]
+        return [
+            (name, [part for part in mesh["primitives"] if "POSITION" in part["attributes"]]) for name, mesh in named
+        ]
 
     def _n_bad(self, number: int) -> int:
         accessor = self._table["accessors"][number]
@@ -96,7 +101,9 @@ class _Contents:
             return 0
         view = self._table["bufferViews"][accessor["bufferView"]]
         start, stride = view.get("byteOffset", 0) + accessor.get("byteOffset", 0), view.get("byteStride", 12)
-        places = np.ndarray((accessor["count"], 3), "<f4", self._buffer(view["buffer"]), start, (stride, 4))
+        places: NDArray[np.float32] = np.ndarray(
+            (accessor["count"], 3), "<f4", self._buffer(view["buffer"]), start, (stride, 4)
+        )
         return int((~np.isfinite(places).all(axis=1)).sum())
 
     def _buffer(self, number: int) -> bytes:

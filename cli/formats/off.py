@@ -239,6 +239,8 @@ def _is_point(line: str, text: _Text) -> bool:
 
 def _is_face(line: str) -> bool:
     words = line.split()
-    return all(word.isdecimal() for word in words[:1]) and all(
-        word.lstrip("-").isdecimal() for word in words[1 : 1 + int(words[0])]
-    ) and len(words) > int(words[0])
+    return (
+        all(word.isdecimal() for word in words[:1])
+        and all(word.lstrip("-").isdecimal() for word in words[1 : 1 + int(words[0])])
+        and len(words) > int(words[0])
+    )

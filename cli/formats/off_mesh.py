@@ -19,7 +19,7 @@ from .repairs import MOVED, Repairs, move_to_neighbours
 
 LEFT_OUT = (
     "Faces that cannot be divided: {} of {}; they have fewer than 3 corners, repeat a corner or another face, or name"
-    " points that do not exist. Their lines in the result have the color of what is around their first point."
+    " points that do not exist. Their lines in the result have the color of the same face or of what is around them."
 )
 # While the mesh is made: the line of the file that each face comes from.
 LINE = "line of the file"
@@ -116,7 +116,7 @@ def _validated(mesh: bpy.types.Mesh, lines: NDArray[np.int64]) -> NDArray[np.int
 
 
 def _labels_of_lines(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
-    """Return the part of each line; of those that are no faces, that of most faces around their first point."""
+    """Return the part of each line; of those that are no faces, that of the same face or around their first point."""
     lines = _lines_of_open_file
     labels = np.zeros(len(lines.file.n_corners), dtype=np.int32)
     if is_analyzed(mesh) and PART.name in mesh.attributes:
@@ -124,7 +124,17 @@ def _labels_of_lines(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
         exists = (first >= 0) & (first < len(mesh.vertices))
         labels[exists] = labels_of_vertices(mesh, of_faces)[first[exists]]
         labels[lines.kept] = of_faces
+        _give_repeats_the_same(labels, lines)
     return labels
+
+
+def _give_repeats_the_same(labels: NDArray[np.int32], lines: _Lines) -> None:
+    repeats = np.setdiff1d(np.arange(len(labels)), lines.kept).tolist()
+    if repeats:
+        corners = [frozenset(row.tolist()) for row in lines.corners]
+        label_of = {corners[line]: labels[line] for line in lines.kept.tolist()}
+        for line in repeats:
+            labels[line] = label_of.get(corners[line], labels[line])
 
 
 def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:

@@ -18,7 +18,7 @@ def claim_own_attributes(mesh: bpy.types.Mesh) -> list[str]:
 
     Formats other than .blend keep the names of attributes, but not the marks that tell ours from the user's.
     """
-    told = []
+    told: list[str] = []
     for own in output_registry.result_attributes(None):
         attribute = mesh.attributes.get(own.name)
         if attribute is None or own.name in own_names(mesh):

@@ -40,7 +40,9 @@ def _give_materials(mesh: bpy.types.Mesh) -> None:
     """Give each part a material of its name and colour, and a copy of each that its faces had before."""
     labels = read_own_integers(mesh, PART)
     slots: list[Material] = [None if _is_of_part_alone(material) else material for material in mesh.materials] or [None]
-    pairs, material_index = np.unique(np.stack([labels, _slots_of_faces(mesh, len(slots))]), axis=1, return_inverse=True)
+    pairs, material_index = np.unique(
+        np.stack([labels, _slots_of_faces(mesh, len(slots))]), axis=1, return_inverse=True
+    )
     colours, given = read(mesh).parts.colours_of(int(labels.max(initial=0)) + 1), names_of_parts(mesh)
     mesh.materials.clear()
     for label, slot in pairs.T.tolist():
@@ -77,7 +79,7 @@ def _copied(part: str, before: bpy.types.Material) -> bpy.types.Material:
     name = f"{part}.{copied}" if copied else part
     material = _named(name, copied or before.name)
     if material is None:
-        material = before.copy()
+        material = present(before.copy())
         if holder := bpy.data.materials.get(name):
             holder.name = f"{name} before"
         material.name, material[COPY_OF] = name, copied or before.name

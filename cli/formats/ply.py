@@ -87,11 +87,12 @@ def _head_of(data: bytes) -> _Head | None:
         return None
     text = found[0].decode("latin-1")
     kinds: dict[str, tuple[int, list[tuple[str, str]]]] = {}
+    properties: list[tuple[str, str]] = []
     for name, count, kind, property_name in ELEMENT.findall(text.replace("\r", "")):
         if name:
-            kinds[name] = properties = (int(count), [])
+            kinds[name] = int(count), (properties := [])
         else:
-            properties[1].append((property_name, kind))
+            properties.append((property_name, kind))
     return _understood(text, kinds)
 
 
@@ -112,7 +113,7 @@ def _not_finite(head: _Head, data: bytes) -> NDArray[np.bool_] | None:
             rows = np.frombuffer(data, head.vertex_type, head.n_vertices, len(head.text))
             places = np.stack([rows["x"], rows["y"], rows["z"]], axis=1)
         else:
-            columns = tuple(head.vertex_type.names.index(name) for name in "xyz")
+            columns = tuple(list(head.vertex_type.fields or ()).index(name) for name in "xyz")
             lines = data[len(head.text) :].decode("latin-1").splitlines()[: head.n_vertices]
             places = np.loadtxt(lines, usecols=columns, comments=None, ndmin=2)
     except ValueError:

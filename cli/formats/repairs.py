@@ -15,13 +15,13 @@ from ...operators.messages.user_errors import Refusal
 Repairs = dict[str, list[str]]
 WHOLE_FILE = ""
 MOVED = (
-    "Points that are no numbers in the file: {}; each was put in the middle of its neighbours, or at the origin if it has"
-    " none."
+    "Points that are no numbers in the file: {}; each was put in the middle of its neighbours, or at the origin if it"
+    " has none."
 )
 NO_NUMBERS = "the mesh {!r} has points that are no numbers ({}); repair the file in the program that wrote it."
 OTHER_FACES = (
-    "The file lists {} faces and the mesh has {}: faces that repeat a corner or another face, or that name points that do"
-    " not exist, cannot be held."
+    "The file lists {} faces and the mesh has {}: those that repeat a corner or another face, or name points that do"
+    " not exist, were left out or divided."
 )
 
 
@@ -79,7 +79,9 @@ def _filled(places: NDArray[np.float32], is_lost: NDArray[np.bool_], edges: NDAr
         if not is_used.any():
             return places
         counts = np.bincount(tails[is_used], minlength=len(places))
-        sums = np.stack([np.bincount(tails[is_used], column, len(places)) for column in places[heads[is_used]].T], axis=1)
+        sums = np.stack(
+            [np.bincount(tails[is_used], column, len(places)) for column in places[heads[is_used]].T], axis=1
+        )
         places[counts > 0] = (sums[counts > 0] / counts[counts > 0, None]).astype(np.float32)
         is_lost[counts > 0] = False
 

@@ -1,11 +1,11 @@
-"""Drivers of shape keys as values: read from one object, and written for another so that they follow what is its own."""
+"""Drivers of shape keys as values: read from one object, and written for another, so that they follow what it has."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import bpy
 
@@ -131,7 +131,7 @@ def _flipped(target: DriverTarget) -> DriverTarget:
 
 
 def _write(obj: bpy.types.Object, block: bpy.types.ShapeKey, given: ShapeKeyDriver) -> Iterator[str]:
-    curve = block.driver_add(given.setting)
+    curve = cast(bpy.types.FCurve, block.driver_add(given.setting))
     driver = present(curve.driver)
     for settings, targets in given.variables:
         variable = driver.variables.new()
@@ -148,7 +148,7 @@ def _write_curve(curve: bpy.types.FCurve, given: ShapeKeyDriver) -> None:
     for modifier in list(curve.modifiers):
         curve.modifiers.remove(modifier)
     for settings in given.modifiers:
-        write_settings(curve.modifiers.new(settings["type"]), settings)
+        write_settings(present(curve.modifiers.new(settings["type"])), settings)
     curve.keyframe_points.clear()
     curve.keyframe_points.add(len(given.keyframes))
     for point, settings in zip(curve.keyframe_points, given.keyframes, strict=True):
@@ -160,8 +160,8 @@ def _write_target(obj: bpy.types.Object, target: bpy.types.DriverTarget, read: D
     own = _own_data(obj).get(read.role)
     is_own = own is not None and _has(own, read.settings)
     known: Any = getattr(bpy.data, KEPT_IN[read.id_type]).get(read.name) if read.id_type in KEPT_IN else None
-    if not target.is_property_readonly("id_type") and read.id_type:
-        target.id_type = read.id_type
+    if read.id_type:
+        write_settings(target, {"id_type": read.id_type})
     target.id = own if is_own else known
     write_settings(target, read.settings)
     if not is_own and read.id_type not in ("", "SCENE"):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..blender.known_values import mesh_of, present
+from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
 from ..mesh_data.attribute_values import Domain, read_attribute, store_values
 from ..mesh_state import state

@@ -10,7 +10,7 @@ Settings = dict[str, Any]
 PLAIN = ("BOOLEAN", "INT", "FLOAT", "STRING", "ENUM")
 
 
-def read_settings(owner: bpy.types.bpy_struct, leave_out: tuple[str, ...] = ()) -> Settings:
+def read_settings(owner: bpy.types.bpy_struct[Any], leave_out: tuple[str, ...] = ()) -> Settings:
     """Return all settings that are plain values and can be set."""
     return {
         setting.identifier: _plain(getattr(owner, setting.identifier), setting)
@@ -19,7 +19,7 @@ def read_settings(owner: bpy.types.bpy_struct, leave_out: tuple[str, ...] = ()) 
     }
 
 
-def write_settings(owner: bpy.types.bpy_struct, settings: Settings) -> None:
+def write_settings(owner: bpy.types.bpy_struct[Any], settings: Settings) -> None:
     """Set what can be set here; another type of the same thing may lack some."""
     for name, value in settings.items():
         if hasattr(owner, name) and not owner.is_property_readonly(name):

@@ -18,7 +18,7 @@ from .layers import Layer
 from .rna_settings import Settings, read_settings, write_settings
 
 ABSOLUTE = "The shape keys of {} are absolute; only relative ones can be transferred."
-STRANGE = '{}: the driver of the shape key "{}" still reads "{}"; {} has nothing of that kind.'
+STRANGE = '{}: nothing here takes the place of "{}", which the driver of the shape key "{}" reads.'
 # Not carried: what a key is called is the layer's name, and a lock would stand in the way of the next transfer.
 NOT_CARRIED = ("name", "lock_shape", "select")
 # The least that a slider can go down to.
@@ -119,4 +119,4 @@ def _new_key(obj: bpy.types.Object, layer: Layer) -> bpy.types.ShapeKey:
 
 def _write_drivers(obj: bpy.types.Object, layer: Layer) -> Iterator[str]:
     strange = write_drivers(obj, layer.name, present(layer.settings).drivers)
-    yield from (STRANGE.format(obj.name, layer.name, name, obj.name) for name in sorted(strange))
+    yield from (STRANGE.format(obj.name, name, layer.name) for name in sorted(strange))

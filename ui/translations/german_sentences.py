@@ -140,7 +140,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "The shape keys of {} are absolute; only relative ones can be transferred.": "Die Formschlüssel von {} sind absolut; nur relative lassen sich übertragen.",
     "The mesh has no Basis that shape keys could start from; add a shape key first.": "Das Netz hat keine Basis, von der Formschlüssel ausgehen könnten; zuerst einen Formschlüssel hinzufügen.",
     '"{}" is the Basis here, but a shape key on the source; rename one of them.': "„{}“ ist hier die Basis, auf der Quelle aber ein Formschlüssel; eines von beiden umbenennen.",
-    '{}: the driver of the shape key "{}" still reads "{}"; {} has nothing of that kind.': "{}: Der Treiber des Formschlüssels „{}“ liest weiter „{}“; {} hat nichts dergleichen.",
+    '{}: nothing here takes the place of "{}", which the driver of the shape key "{}" reads.': "{}: Nichts hier tritt an die Stelle von „{}“, das der Treiber des Formschlüssels „{}“ liest.",
     'The shape key "{}" is locked; unlock it first.': "Der Formschlüssel „{}“ ist gesperrt; zuerst entsperren.",
     'The vertex group "{}" is locked; unlock it first.': "Die Punktgruppe „{}“ ist gesperrt; zuerst entsperren.",
     'There is no vertex group "{}" to be used as the mask.': "Es gibt keine Punktgruppe „{}“, die als Maske dienen könnte.",
