@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...operators.blender.known_values import elements_of, mesh_of, present
-from ...operators.mesh_data.mesh_arrays import read_mesh, read_own_integers
+from ...operators.mesh_data.mesh_arrays import read_own_integers
 from ...operators.mesh_state.state import is_analyzed, read
 from ...operators.outputs.division import PART
 from ...operators.outputs.vertex_map import labels_of_vertices
@@ -40,9 +40,10 @@ class _Lines:
     kept: NDArray[np.int64]
 
     @property
-    def corners(self) -> list[NDArray[np.int64]]:
+    def corners(self) -> list[list[int]]:
         """The corners on each line."""
-        return np.split(self.file.corners, np.cumsum(self.file.n_corners))[:-1]
+        corners, ends = self.file.corners.tolist(), np.cumsum(self.file.n_corners).tolist()
+        return [corners[start:end] for start, end in zip([0, *ends], ends, strict=False)]
 
     @property
     def first_corner(self) -> NDArray[np.int64]:
@@ -78,9 +79,9 @@ def write_off(path: Path) -> None:
     mesh = mesh_of(next(obj for obj in bpy.data.objects if obj.type == "MESH"))
     labels = _labels_of_lines(mesh)
     colours = _bytes_of_labels(mesh, int(labels.max(initial=0)) + 1)
-    places = [f"{x:.9g} {y:.9g} {z:.9g}" for x, y, z in read_mesh(mesh).vertices.tolist()]
+    places = [f"{vertex.co.x:.9g} {vertex.co.y:.9g} {vertex.co.z:.9g}" for vertex in mesh.vertices]
     faces = [
-        f"{' '.join(map(str, [len(corners), *corners.tolist()]))} {colours[label]}"
+        f"{' '.join(map(str, [len(corners), *corners]))} {colours[label]}"
         for corners, label in zip(_lines_of_open_file.corners, labels.tolist(), strict=True)
     ]
     path.write_text("\n".join(["OFF", f"{len(places)} {len(faces)} 0", *places, *faces]) + "\n", encoding="ascii")
@@ -131,7 +132,7 @@ def _labels_of_lines(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
 def _give_repeats_the_same(labels: NDArray[np.int32], lines: _Lines) -> None:
     repeats = np.setdiff1d(np.arange(len(labels)), lines.kept).tolist()
     if repeats:
-        corners = [frozenset(row.tolist()) for row in lines.corners]
+        corners = [frozenset(row) for row in lines.corners]
         label_of = {corners[line]: labels[line] for line in lines.kept.tolist()}
         for line in repeats:
             labels[line] = label_of.get(corners[line], labels[line])

@@ -68,6 +68,7 @@ def _shape_key(obj: bpy.types.Object, name: str) -> Callable[[], None]:
         if block is None:
             return
         if places is None:
+            # Some versions of Blender leave them behind.
             remove_drivers(block)
             obj.shape_key_remove(block)
         else:
