@@ -120,7 +120,7 @@ def try_file(path: Path) -> dict[str, Any]:
     from eigenparts.operators.messages.user_errors import Refusal
 
     try:
-        objects = formats.load(path)
+        objects = formats.load(path).objects
     except Refusal as refusal:
         return {"outcomes": {"read": "sentence"}, "sentences": [str(refusal)]}
     outcomes: dict[str, str] = {}

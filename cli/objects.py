@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Callable
+from dataclasses import replace
 
 import bpy
 
@@ -13,21 +14,22 @@ from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_settings import AnalysisSettings
 from ..operators.parts.choice_items import ATTRIBUTE, EIGENFUNCTION, identifier
 from ..operators.parts.mesh_segmentation import AnalysisResult
+from .formats import OpenFile
 from .report import ObjectRow, part_rows
 
 
-def chosen_objects(objects: list[bpy.types.Object], name: str | None) -> list[bpy.types.Object]:
-    """Return the object of that name, or the one that stands for its mesh; all if there is no name."""
+def chosen_objects(file: OpenFile, name: str | None) -> OpenFile:
+    """Return a file with the object of that name, or the one that stands for its mesh; all if there is no name."""
     named = {obj.data for obj in bpy.data.objects if obj.name == name}
-    chosen = [obj for obj in objects if name is None or obj.data in named]
+    chosen = [obj for obj in file.objects if name is None or obj.data in named]
     if not chosen:
-        raise Refusal(f"there is no mesh object {name!r}; there are {', '.join(obj.name for obj in objects)}.")
-    return chosen
+        raise Refusal(f"there is no mesh object {name!r}; there are {', '.join(obj.name for obj in file.objects)}.")
+    return replace(file, objects=chosen)
 
 
-def report_each(objects: list[bpy.types.Object], work: Callable[[bpy.types.Object], ObjectRow]) -> list[ObjectRow]:
+def report_each(file: OpenFile, work: Callable[[bpy.types.Object], ObjectRow]) -> list[ObjectRow]:
     """Return a row for each object; what is wrong with one does not stop the others of its file."""
-    return [_report(obj, work) for obj in objects]
+    return [_report(obj, work, file.repairs_of(obj)) for obj in file.objects]
 
 
 def analysis_settings(options: argparse.Namespace) -> AnalysisSettings:
@@ -57,8 +59,10 @@ def row_of(
     }
 
 
-def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], ObjectRow]) -> ObjectRow:
+def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], ObjectRow], repairs: list[str]) -> ObjectRow:
     try:
-        return work(obj)
+        row = work(obj)
     except (Refusal, EngineError) as refusal:
         return {"name": obj.name, "error": str(refusal)}
+    row["warnings"] = [*repairs, *row["warnings"]]
+    return row

@@ -30,6 +30,8 @@ class Reference:
 
     prepared: PreparedReference
     shared: SharedParts
+    # What was mended when it was read.
+    repairs: list[str]
 
 
 class Register:
@@ -54,11 +56,11 @@ class Register:
         """Leave a file open with its meshes divided, and return a row for each."""
         # The reference opens a file of its own, so it comes first.
         reference = self._reference
-        objects = chosen_objects(formats.load(path), self._options.object)
+        file = chosen_objects(formats.load(path), self._options.object)
         if path.resolve() != self._options.source.resolve():
-            return report_each(objects, self._divide)
+            return report_each(file, self._divide)
         shown = bpy.data.objects[reference.prepared.name]
-        return report_each(objects, lambda obj: self._show(obj) if obj == shown else self._divide(obj, shown))
+        return report_each(file, lambda obj: self._show(obj) if obj == shown else self._divide(obj, shown))
 
     @cached_property
     def _reference(self) -> Reference:
@@ -84,12 +86,16 @@ class Register:
         row = row_of(obj, shape.labels, shape.result, messages)
         for part in row["parts"]:
             part["matched"] = part["id"] <= prepared.highest_label
+        if reference is None:
+            row["warnings"] += [f"{prepared.name}: {repair}" for repair in self._reference.repairs]
         row["reference"], row["confidence"] = prepared.name, round(float(shape.matching.confidence), 4)
         return row
 
 
 def _prepare(options: argparse.Namespace) -> Reference:
-    obj = chosen_objects(formats.load(options.source), options.reference)[0]
+    file = chosen_objects(formats.load(options.source), options.reference)
+    obj = file.objects[0]
+    repairs = file.repairs_of(obj)
     settings = analysis_settings(options)
     given, shown = mesh_registration.read_reference(
         bpy.context, obj, settings, mode=options.mode, choice=choice_of(options)
@@ -99,4 +105,5 @@ def _prepare(options: argparse.Namespace) -> Reference:
     # Its names and colours are read off the mesh that shows its parts; this file is not written.
     written = mesh_registration.write_reference(obj, prepared)
     match_options = MatchOptions(mirrored=options.mirrored)
-    return Reference(prepared, mesh_registration.shared_parts(obj, prepared, written, match_options, settings))
+    shared = mesh_registration.shared_parts(obj, prepared, written, match_options, settings)
+    return Reference(prepared, shared, repairs)

@@ -2,6 +2,7 @@
 
 import argparse
 import time
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
@@ -26,6 +27,8 @@ class Transfer:
 
     def __init__(self, options: argparse.Namespace) -> None:
         self._options = options
+        # What was mended when the source was read.
+        self._repairs: list[str] = []
 
     @cached_property
     def settings(self) -> Settings:
@@ -41,17 +44,19 @@ class Transfer:
         """Leave a file open whose meshes have the layers of the source, and return a row for each."""
         # The source opens a file of its own, so it comes first.
         source = self._source
-        objects = chosen_objects(formats.load(path), self._options.object)
+        file = chosen_objects(formats.load(path), self._options.object)
         if path.resolve() == self._options.source.resolve():
-            objects = [obj for obj in objects if obj.name != source.name]
-        if not objects:
+            file = replace(file, objects=[obj for obj in file.objects if obj.name != source.name])
+        if not file.objects:
             raise Refusal("there is no mesh in this file but the source.")
-        return report_each(objects, self._transfer)
+        return report_each(file, self._transfer)
 
     @cached_property
     def _source(self) -> TransferSource:
         try:
-            obj = chosen_objects(formats.load(self._options.source), self._options.reference)[0]
+            file = chosen_objects(formats.load(self._options.source), self._options.reference)
+            obj = file.objects[0]
+            self._repairs = [f"{obj.name}: {repair}" for repair in file.repairs_of(obj)]
             return mesh_transfer.read_source(bpy.context, obj, self._settings)
         except (Refusal, EngineError) as error:
             raise Refusal(f"the source {self._options.source}: {error}") from error
@@ -67,7 +72,9 @@ class Transfer:
         target = mesh_transfer.read_target(bpy.context, obj, source, settings)
         mapped = map_to_all(source.shape, source.layers, [target], fills=settings.fills_unsure, progress=silent)
         (messages,) = mesh_transfer.write_all([obj], mapped, source, settings)
-        return _row(obj, source, mapped[0], messages) | {"seconds": round(time.perf_counter() - start, 3)}
+        row = _row(obj, source, mapped[0], messages)
+        row["warnings"] += self._repairs
+        return row | {"seconds": round(time.perf_counter() - start, 3)}
 
 
 def _row(obj: bpy.types.Object, source: TransferSource, mapped: MappedLayers, messages: Messages) -> ObjectRow:

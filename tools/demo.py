@@ -95,7 +95,7 @@ def _characters() -> list[bpy.types.Object]:
 
 def _load(path: Path) -> list[bpy.types.Object]:
     try:
-        return formats.load(path)
+        return formats.load(path).objects
     except Refusal as refusal:
         sys.exit(f"{path}: {refusal}")
 

@@ -98,6 +98,11 @@ def analyze(
 
 def _warnings_of(surface: Surface, hierarchy: Hierarchy) -> list[str]:
     warnings = []
+    if surface.n_left_out:
+        warnings.append(
+            f"Triangles that have collapsed or repeat others: {surface.n_left_out}; each has the part of what is next"
+            " to it."
+        )
     if surface.n_components > 1:
         alone = ", each by itself" if surface.is_apart else ""
         warnings.append(

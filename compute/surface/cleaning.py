@@ -36,6 +36,8 @@ class Surface:
         Number of those that are analyzed.
     is_apart : bool
         Whether these are analyzed each by itself; otherwise the surface is connected.
+    n_left_out : int
+        Triangles of the input that have collapsed or repeat others.
     """
 
     mesh: TriangleMesh
@@ -45,6 +47,7 @@ class Surface:
     n_components: int
     n_joined: int = 1
     is_apart: bool = False
+    n_left_out: int = 0
 
 
 def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
@@ -154,6 +157,7 @@ def _surface_of(mesh: TriangleMesh, welded: _Welded, is_chosen: Bools) -> Surfac
         input_triangle=chosen,
         triangle_of_input=nearest,
         n_components=n_components,
+        n_left_out=len(welded.twin) - len(welded.input_triangle),
     )
 
 

@@ -1,7 +1,7 @@
 """Read from an object the layers that are to be transferred."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -17,12 +17,12 @@ from ..outputs.division import PART
 from ..outputs.part_writer import read_labels
 from . import layer_choices, layers
 from .layers import Layer
+from .shape_keys import read_shape_keys
 
 # Attributes that begin with a point are Blender's own, but these are made by hand.
 MADE_BY_HAND = (".sculpt_face_set", ".sculpt_mask")
 # These have a layer of their own, or are the shape itself.
 NOT_ATTRIBUTES = ("position", "material_index")
-ABSOLUTE = "The shape keys of {} are absolute; only relative ones can be transferred."
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def read_layers(obj: bpy.types.Object, choice: LayerChoice) -> list[Layer]:
     readers = {
         layer_choices.PARTS: _parts,
         layer_choices.GROUPS: lambda obj: _groups(obj, _chosen_groups(obj, choice)),
-        layer_choices.SHAPE_KEYS: _shape_keys,
+        layer_choices.SHAPE_KEYS: lambda obj: _shape_keys(obj, choice),
         layer_choices.MATERIALS: _materials,
     }
     given = [layer for kind, read in readers.items() if kind in choice.kinds for layer in read(obj)]
@@ -64,7 +64,8 @@ def read_layers(obj: bpy.types.Object, choice: LayerChoice) -> list[Layer]:
 def _with_side(layer: Layer) -> Layer:
     if layer.kind not in (layers.GROUP, layers.SHAPE_KEY):
         return layer
-    return Layer(layer.kind, bpy.utils.flip_name(layer.name), layer.values)
+    settings = layer.settings and layer.settings.flipped()
+    return replace(layer, name=bpy.utils.flip_name(layer.name), settings=settings)
 
 
 def _parts(obj: bpy.types.Object) -> Iterator[Layer]:
@@ -117,22 +118,14 @@ def read_weights(obj: bpy.types.Object, names: list[str]) -> NDArray[np.float64]
     return weights
 
 
-def _shape_keys(obj: bpy.types.Object) -> Iterator[Layer]:
-    keys = mesh_of(obj).shape_keys
-    if keys is None:
-        return
-    if not keys.use_relative:
-        raise Refusal(ABSOLUTE.format(obj.name))
-    for block in keys.key_blocks[1:]:
-        moved = read_key(block) - read_key(block.relative_key)
-        yield Layer(layers.SHAPE_KEY, block.name, moved)
-
-
-def read_key(block: bpy.types.ShapeKey) -> NDArray[np.float64]:
-    """Return the (V, 3) positions of a shape key."""
-    positions = np.empty(3 * len(block.data), dtype=np.float32)
-    block.data.foreach_get("co", positions)
-    return positions.reshape(-1, 3).astype(np.float64)
+def _shape_keys(obj: bpy.types.Object, choice: LayerChoice) -> Iterator[Layer]:
+    """Yield the shape keys, and the vertex groups that limit them, which the targets may lack."""
+    given = list(read_shape_keys(obj))
+    chosen = _chosen_groups(obj, choice) if layer_choices.GROUPS in choice.kinds else ()
+    limits = dict.fromkeys(layer.settings.vertex_group for layer in given if layer.settings)
+    names = [name for name in limits if name in obj.vertex_groups and name not in chosen]
+    yield from (replace(layer, is_companion=True) for layer in _groups(obj, names))
+    yield from given
 
 
 def _materials(obj: bpy.types.Object) -> Iterator[Layer]:

@@ -9,9 +9,11 @@ from ..blender.known_values import mesh_of, present
 from ..mesh_data.attribute_values import read_attribute, store_values
 from ..outputs.rollback import all_or_nothing
 from . import layers
-from .layer_reading import read_key, read_weights
+from .drivers import remove_drivers
+from .layer_reading import read_weights
 from .layer_writing import fill_group
 from .layers import Layer
+from .shape_keys import read_key
 
 
 @contextmanager
@@ -66,6 +68,8 @@ def _shape_key(obj: bpy.types.Object, name: str) -> Callable[[], None]:
         if block is None:
             return
         if places is None:
+            # Some versions of Blender leave them behind.
+            remove_drivers(block)
             obj.shape_key_remove(block)
         else:
             block.data.foreach_set("co", places.ravel())

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..blender.known_values import mesh_of, present
+from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
 from ..mesh_data.attribute_values import Domain, read_attribute, store_values
 from ..mesh_state import state
@@ -17,8 +17,9 @@ from ..messages.user_errors import Refusal, in_name_of
 from ..outputs import corner_colours
 from ..outputs.division import PART, Division
 from . import layers
-from .layer_reading import ABSOLUTE, read_key, read_weights
+from .layer_reading import read_weights
 from .layers import Layer
+from .shape_keys import ABSOLUTE, write_shape_keys
 
 # Weights below this are left out of a vertex group.
 LEAST_WEIGHT = 1e-4
@@ -55,7 +56,7 @@ def _refuse_linked(obj: bpy.types.Object) -> None:
 
 
 def _refuse_locked(obj: bpy.types.Object, layer: Layer) -> None:
-    if layer.name in obj.vertex_groups and obj.vertex_groups[layer.name].lock_weight:
+    if not layer.is_companion and layer.name in obj.vertex_groups and obj.vertex_groups[layer.name].lock_weight:
         raise Refusal(f'The vertex group "{layer.name}" is locked; unlock it first.')
 
 
@@ -95,8 +96,8 @@ _OBSTACLES = {
 }
 
 
-def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: NDArray[np.float32]) -> None:
-    """Write layers to an object that `refuse_obstacles` let pass.
+def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: NDArray[np.float32]) -> list[str]:
+    """Write layers to an object that `refuse_obstacles` let pass, and return what is to be told.
 
     Parameters
     ----------
@@ -105,16 +106,15 @@ def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: N
     """
     mesh, share = mesh_of(obj), _shares(obj, mix)
     writers: dict[str, Callable[[Layer], None]] = {
-        layers.SHAPE_KEY: lambda layer: _write_key(obj, layer, share),
         layers.MATERIAL: lambda layer: _write_materials(mesh, layer, share),
         layers.PARTS: lambda layer: _write_parts(mesh, layer, share, colours),
     }
-    _write_groups(obj, [layer for layer in given if layer.kind == layers.GROUP], share)
+    _write_companions(obj, [layer for layer in given if layer.is_companion])
+    _write_groups(obj, [layer for layer in given if layer.kind == layers.GROUP and not layer.is_companion], share)
     for kind in (
         layers.POINT,
         layers.FACE,
         layers.CORNER,
-        layers.SHAPE_KEY,
         layers.MATERIAL,
         layers.PARTS,
     ):
@@ -123,7 +123,9 @@ def write_layers(obj: bpy.types.Object, given: list[Layer], mix: Mix, colours: N
                 writers[kind](layer)
             else:
                 _write_attribute(mesh, layer, share)
+    told = write_shape_keys(obj, [layer for layer in given if layer.kind == layers.SHAPE_KEY], share)
     mesh.update()
+    return told
 
 
 def _shares(obj: bpy.types.Object, mix: Mix) -> NDArray[np.float64]:
@@ -131,6 +133,12 @@ def _shares(obj: bpy.types.Object, mix: Mix) -> NDArray[np.float64]:
     if not mix.mask:
         return np.full(len(mesh_of(obj).vertices), mix.factor)
     return mix.factor * read_weights(obj, [mix.mask])[:, 0]
+
+
+def _write_companions(obj: bpy.types.Object, some: list[Layer]) -> None:
+    """Write whole vertex groups that shape keys need, where the object has none of their names."""
+    missing = [layer for layer in some if layer.name not in obj.vertex_groups]
+    _write_groups(obj, missing, np.ones(len(mesh_of(obj).vertices)))
 
 
 def _write_groups(obj: bpy.types.Object, some: list[Layer], share: NDArray[np.float64]) -> None:
@@ -152,17 +160,6 @@ def fill_group(group: bpy.types.VertexGroup, weights: NDArray[np.float64], befor
     # Blender takes one weight for any number of vertices, so those between 0 and 1 go one by one.
     for vertex in np.flatnonzero((weights > 0) & (weights < 1)).tolist():
         group.add([vertex], weights[vertex], "REPLACE")
-
-
-def _write_key(obj: bpy.types.Object, layer: Layer, share: NDArray[np.float64]) -> None:
-    keys = present(mesh_of(obj).shape_keys)
-    block = keys.key_blocks.get(layer.name)
-    if block is None:
-        block = obj.shape_key_add(name=layer.name, from_mix=False)
-        block.data.foreach_set("co", read_key(keys.reference_key).astype(np.float32).ravel())
-    basis = read_key(block.relative_key)
-    moved = basis + compute.mixed(read_key(block) - basis, layer.values, share)
-    block.data.foreach_set("co", moved.astype(np.float32).ravel())
 
 
 def _write_materials(mesh: bpy.types.Mesh, layer: Layer, share: NDArray[np.float64]) -> None:

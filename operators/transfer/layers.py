@@ -1,11 +1,16 @@
 """Layers of a mesh as arrays: weights, maps, keys and the like in one form for reading, mapping and writing."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import NDArray
 
 from ..mesh_data.attribute_values import STORAGES, AttributeType
+
+if TYPE_CHECKING:
+    from .shape_keys import ShapeKeySettings
 
 GROUP, POINT, FACE, CORNER, SHAPE_KEY, MATERIAL, PARTS = (
     "GROUP", "POINT", "FACE", "CORNER", "SHAPE_KEY", "MATERIAL", "PARTS",
@@ -28,6 +33,10 @@ class Layer:
     names : tuple of str
         Of the materials that values count.
     is_uv : bool
+    settings : ShapeKeySettings, optional
+        Of a shape key.
+    is_companion : bool
+        Whether it comes along with another layer, and what the target has of that name stays.
     """
 
     kind: str
@@ -36,6 +45,8 @@ class Layer:
     data_type: AttributeType | Literal[""] = ""
     names: tuple[str, ...] = ()
     is_uv: bool = False
+    settings: ShapeKeySettings | None = None
+    is_companion: bool = False
 
     @property
     def can_blend(self) -> bool:
@@ -44,6 +55,6 @@ class Layer:
             return True
         return self.kind in (POINT, CORNER) and STORAGES[self.data_type].can_blend
 
-    def with_values(self, values: NDArray[Any]) -> "Layer":
+    def with_values(self, values: NDArray[Any]) -> Layer:
         """Return the layer with other values."""
         return replace(self, values=values)

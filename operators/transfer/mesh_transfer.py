@@ -108,11 +108,15 @@ def write_all(
     """Write layers to all objects or to none, and return what is to be told of each."""
     for obj, one in zip(objects, mapped, strict=True):
         refuse_obstacles(obj, one.layers, settings.mix)
+    told = []
     with ExitStack() as all_of_them:
         for obj, one in zip(objects, mapped, strict=True):
             all_of_them.enter_context(layers_or_nothing(obj, one.layers))
-            write_layers(obj, one.layers, settings.mix, source.colours)
-    return [_messages(obj, source.name, one, settings) for obj, one in zip(objects, mapped, strict=True)]
+            told.append(write_layers(obj, one.layers, settings.mix, source.colours))
+    return [
+        _messages(obj, source.name, one, settings, sentences)
+        for obj, one, sentences in zip(objects, mapped, told, strict=True)
+    ]
 
 
 def _read_shape(
@@ -140,11 +144,13 @@ def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: Ma
     )
 
 
-def _messages(obj: bpy.types.Object, source: str, mapped: MappedLayers, settings: TransferSettings) -> Messages:
+def _messages(
+    obj: bpy.types.Object, source: str, mapped: MappedLayers, settings: TransferSettings, told: list[str]
+) -> Messages:
     n_layers = len(mapped.layers)
     given = f"{obj.name}: {n_layers} layers of {source}." if n_layers > 1 else f"{obj.name}: 1 layer of {source}."
     infos = (given, FOUND_BY[mapped.found_by], _unsure(mapped, settings))
-    return Messages(infos, (*mapped.warnings, *_doubts(obj, source, mapped)))
+    return Messages(infos, (*mapped.warnings, *_doubts(obj, source, mapped), *told))
 
 
 def _doubts(obj: bpy.types.Object, source: str, mapped: MappedLayers) -> list[str]:

@@ -39,11 +39,13 @@ def materials_of(mesh):
 
 
 def object_as_it_is(obj):
-    """Return where an object hangs, what modifies it, and its shape keys."""
+    """Return where an object hangs, what modifies it, and its shape keys with their drivers."""
     keys = obj.data.shape_keys.key_blocks if obj.data.shape_keys else ()
+    animation = obj.data.shape_keys.animation_data if obj.data.shape_keys else None
+    drivers = [curve.data_path for curve in animation.drivers] if animation else []
     shapes = {key.name: np.array([point.co for point in key.data]).tobytes() for key in keys}
     where = tuple(map(tuple, obj.matrix_world)), obj.parent, [modifier.name for modifier in obj.modifiers]
-    return where, shapes, [layer.name for layer in obj.data.uv_layers]
+    return where, shapes, drivers, [layer.name for layer in obj.data.uv_layers]
 
 
 def blocks():

@@ -200,7 +200,9 @@ def test_the_panel_tells_of_a_level_that_found_no_memory(full, monkeypatch):
 def dressed(full, star):
     """Two stars beside the full one that have some of its layers, and some of their own."""
     full.shape_key_add(name="Basis")
-    full.shape_key_add(name="wide").data[5].co.x += 1
+    wide = full.shape_key_add(name="wide")
+    wide.data[5].co.x += 1
+    wide.driver_add("value").driver.variables.new()
     full.data.uv_layers.new(name="map")
     full.data.attributes.new("heat", "FLOAT", "POINT").data.foreach_set("value", star.vertices[:, 0].astype(np.float32))
     others = [add_object((1 + k) * star.vertices, star.triangles, f"star {k}") for k in (1, 2)]
@@ -215,7 +217,8 @@ def dressed(full, star):
 
 
 TRANSFER_WRITERS = (
-    *("layer_writing.fill_group", "layer_writing.store_values", "layer_writing._write_key", "layer_writing._slot"),
+    *("layer_writing.fill_group", "layer_writing.store_values", "layer_writing._slot"),
+    *("shape_keys._write_places", "shape_keys._new_key", "drivers._write_curve", "drivers.write_settings"),
     *("layer_writing._write_materials", "layer_writing._write_parts", "layer_writing._new_attribute"),
     *("layer_writing._write_attribute", "mesh_arrays.write_attribute", "corner_colours.write_attribute"),
 )

@@ -38,3 +38,33 @@ def test_what_the_source_does_not_have_is_an_error(run, weighted, tmp_path):
     assert (code, len(errors)) == (1, 1)
     assert "none of the layers" in errors[0]
     assert run("transfer", copy, "--source", weighted, "--layers", "dreams")[0] == 2
+
+
+def add_keys(obj, names):
+    for name in names:
+        obj.shape_key_add(name=name)
+    return obj.data.shape_keys
+
+
+def test_a_driver_reads_the_keys_of_the_mesh_that_it_goes_to(run, tmp_path):
+    """What it reads besides is in the other file, which is told."""
+    keys = add_keys(add_object(lumpy_ball(2), "source"), ("Basis", "Open", "Smile"))
+    driver = keys.key_blocks["Smile"].driver_add("value").driver
+    controller = bpy.data.objects.new("controller", None)
+    bpy.context.collection.objects.link(controller)
+    for name, read, path in (("a", keys, 'key_blocks["Open"].value'), ("b", controller, "location.x")):
+        variable = driver.variables.new()
+        variable.name, variable.targets[0].id_type = name, read.id_type
+        variable.targets[0].id, variable.targets[0].data_path = read, path
+    first = write_blend(tmp_path / "source.blend")
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    add_keys(add_object(lumpy_ball(2), "target"), ("Basis",))
+    second = write_blend(tmp_path / "target.blend")
+    code, report, _ = run("transfer", second, "--source", first, "--layers", "shape_keys", "--json")
+    assert code == 0
+    assert any('takes the place of "controller"' in told for told in report["files"][0]["objects"][0]["warnings"])
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "target_transferred.blend"))
+    keys = bpy.data.objects["target"].data.shape_keys
+    read = {variable.name: variable.targets[0] for variable in keys.animation_data.drivers[0].driver.variables}
+    assert (read["a"].id, read["a"].data_path) == (keys, 'key_blocks["Open"].value')
+    assert (read["b"].id, read["b"].data_path) == (None, "location.x")

@@ -129,6 +129,14 @@ def test_a_sphere_is_one_part_without_features():
     assert "no features" in analysis.warnings[0]
 
 
+def test_triangles_that_repeat_others_or_have_collapsed_are_counted():
+    mesh = star()
+    odd = np.array([mesh.triangles[5], mesh.triangles[5][::-1], [0, 0, 1]])
+    assert analyze(mesh).warnings == ()
+    (told,) = analyze(TriangleMesh(mesh.vertices, np.vstack([mesh.triangles, odd]))).warnings
+    assert "collapsed or repeat others: 3;" in told
+
+
 def test_small_shells_follow_what_they_lie_on():
     body = star()
     tip = body.vertices[np.argmax(body.vertices[:, 0])]

@@ -1,0 +1,145 @@
+"""Meshes of .off files: every face keeps its line, also those that Blender cannot hold."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...operators.blender.known_values import elements_of, mesh_of, present
+from ...operators.mesh_data.mesh_arrays import read_own_integers
+from ...operators.mesh_state.state import is_analyzed, read
+from ...operators.outputs.division import PART
+from ...operators.outputs.vertex_map import labels_of_vertices
+from .off import OffFile, parse_off
+from .repairs import MOVED, Repairs, move_to_neighbours
+
+LEFT_OUT = (
+    "Faces that cannot be divided: {} of {}; they have fewer than 3 corners, repeat a corner or another face, or name"
+    " points that do not exist. Their lines in the result have the color of the same face or of what is around them."
+)
+# While the mesh is made: the line of the file that each face comes from.
+LINE = "line of the file"
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """The lines of the faces of a file.
+
+    Attributes
+    ----------
+    file : OffFile
+    kept : (F',) int64
+        The line of each face that the mesh has.
+    """
+
+    file: OffFile
+    kept: NDArray[np.int64]
+
+    @property
+    def corners(self) -> list[list[int]]:
+        """The corners on each line."""
+        corners, ends = self.file.corners.tolist(), np.cumsum(self.file.n_corners).tolist()
+        return [corners[start:end] for start, end in zip([0, *ends], ends, strict=False)]
+
+    @property
+    def first_corner(self) -> NDArray[np.int64]:
+        """(F,) the first corner on each line, -1 where there is none."""
+        has_corners = self.file.n_corners > 0
+        first = np.full(len(has_corners), -1)
+        first[has_corners] = self.file.corners[(np.cumsum(self.file.n_corners) - self.file.n_corners)[has_corners]]
+        return first
+
+
+# Of the file that is open: Blender has no place for faces that are none.
+_lines_of_open_file: _Lines
+
+
+def read_off(path: Path) -> Repairs:
+    """Add the mesh of a file to the scene, and return what was mended."""
+    global _lines_of_open_file
+    file = parse_off(path.read_bytes())
+    mesh = bpy.data.meshes.new(path.stem)
+    lines = _fill(mesh, file)
+    # Before Blender puts them at the origin.
+    n_moved = move_to_neighbours(mesh)
+    kept, n_faces = _validated(mesh, lines), len(file.n_corners)
+    _lines_of_open_file = _Lines(file, kept)
+    present(bpy.context.collection).objects.link(bpy.data.objects.new(path.stem, mesh))
+    told = [MOVED.format(n_moved)] if n_moved else []
+    told += [LEFT_OUT.format(n_faces - len(kept), n_faces)] if len(kept) < n_faces else []
+    return {mesh.name: told}
+
+
+def write_off(path: Path) -> None:
+    """Write the mesh that was read, each line of a face with the colour of its part behind it."""
+    mesh = mesh_of(next(obj for obj in bpy.data.objects if obj.type == "MESH"))
+    labels = _labels_of_lines(mesh)
+    colours = _bytes_of_labels(mesh, int(labels.max(initial=0)) + 1)
+    places = [f"{vertex.co.x:.9g} {vertex.co.y:.9g} {vertex.co.z:.9g}" for vertex in mesh.vertices]
+    faces = [
+        f"{' '.join(map(str, [len(corners), *corners]))} {colours[label]}"
+        for corners, label in zip(_lines_of_open_file.corners, labels.tolist(), strict=True)
+    ]
+    path.write_text("\n".join(["OFF", f"{len(places)} {len(faces)} 0", *places, *faces]) + "\n", encoding="ascii")
+
+
+def _fill(mesh: bpy.types.Mesh, file: OffFile) -> NDArray[np.int64]:
+    """Give a new mesh points, and faces whose points exist, and return the lines of these."""
+    line_of_corner = np.repeat(np.arange(len(file.n_corners)), file.n_corners)
+    is_missing = (file.corners < 0) | (file.corners >= len(file.vertices))
+    is_face = (file.n_corners >= 3) & (np.bincount(line_of_corner, is_missing, len(file.n_corners)) == 0)
+    n_corners = file.n_corners[is_face]
+    mesh.vertices.add(len(file.vertices))
+    with np.errstate(over="ignore"):
+        mesh.vertices.foreach_set("co", file.vertices.astype(np.float32).ravel())
+    mesh.loops.add(int(n_corners.sum()))
+    mesh.loops.foreach_set("vertex_index", file.corners[is_face[line_of_corner]].astype(np.int32))
+    mesh.polygons.add(len(n_corners))
+    mesh.polygons.foreach_set("loop_start", (np.cumsum(n_corners) - n_corners).astype(np.int32))
+    mesh.update(calc_edges=True)
+    mesh.shade_flat()
+    return np.flatnonzero(is_face)
+
+
+def _validated(mesh: bpy.types.Mesh, lines: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Leave out the faces that Blender cannot hold, and return those of the lines that stay."""
+    attribute = mesh.attributes.new(LINE, "INT", "FACE")
+    elements_of(attribute).foreach_set("value", lines.astype(np.int32))
+    mesh.validate()
+    kept = np.empty(len(mesh.polygons), dtype=np.int32)
+    elements_of(mesh.attributes[LINE]).foreach_get("value", kept)
+    mesh.attributes.remove(mesh.attributes[LINE])
+    return kept.astype(np.int64)
+
+
+def _labels_of_lines(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Return the part of each line; of those that are no faces, that of the same face or around their first point."""
+    lines = _lines_of_open_file
+    labels = np.zeros(len(lines.file.n_corners), dtype=np.int32)
+    if is_analyzed(mesh) and PART.name in mesh.attributes:
+        of_faces, first = read_own_integers(mesh, PART), lines.first_corner
+        exists = (first >= 0) & (first < len(mesh.vertices))
+        labels[exists] = labels_of_vertices(mesh, of_faces)[first[exists]]
+        labels[lines.kept] = of_faces
+        _give_repeats_the_same(labels, lines)
+    return labels
+
+
+def _give_repeats_the_same(labels: NDArray[np.int32], lines: _Lines) -> None:
+    repeats = np.setdiff1d(np.arange(len(labels)), lines.kept).tolist()
+    if repeats:
+        corners = [frozenset(row) for row in lines.corners]
+        label_of = {corners[line]: labels[line] for line in lines.kept.tolist()}
+        for line in repeats:
+            labels[line] = label_of.get(corners[line], labels[line])
+
+
+def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:
+    """Return the colour of each label as the format wants it, "230 159 0"."""
+    linear = read(mesh).parts.colours_of(n_labels)[:, :3]
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return [" ".join(map(str, row)) for row in np.rint(255 * srgb).astype(int).tolist()]
