@@ -9,7 +9,9 @@ from ..operators.messages.user_errors import Refusal
 from . import batch
 from .formats import name_of_divided, name_of_transferred
 from .jobs import Job, conflicting_jobs, jobs_of_files
-from .process_pool import cluster_pool, local_pool
+from .cluster import cluster_pool
+from .process_limits import end_with_parent, is_supervised, memory_limited
+from .process_pool import local_pool, units_of
 from .registering import Register
 from .report import Report
 from .reporters import ProgressLine, reporter_for
@@ -20,6 +22,8 @@ from .transferring import Transfer
 
 def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do what was asked for, tell about each file, and return 1 if any failed."""
+    if is_supervised():
+        end_with_parent()
     do = _run_batch if options.command == "batch" else _run_files
     try:
         return do(options, out, err)
@@ -66,11 +70,20 @@ def _reports(jobs: list[Job], options: argparse.Namespace) -> Iterator[Report]:
     if options.scheduler:
         with cluster_pool(options) as pool:
             yield from pool.run(free)
-    elif options.jobs:
+    elif _needs_processes(free, options):
         with local_pool(options) as pool:
-            yield from pool.run(free)
+            yield from pool.run(units_of(free, options))
     else:
-        yield from run_in_this_process(free, _command(options))
+        with memory_limited(options.memory_limit):
+            yield from run_in_this_process(free, _command(options))
+
+
+def _needs_processes(jobs: list[Job], options: argparse.Namespace) -> bool:
+    """Whether files are done in other processes: one that ends its process would otherwise take more with it."""
+    if options.in_process:
+        return False
+    is_asked_for = options.jobs or options.timeout or options.memory_limit
+    return bool(jobs) and (options.command == "batch" or len(jobs) > 1 or is_asked_for is not None)
 
 
 def _command(options: argparse.Namespace) -> Command:
