@@ -11,6 +11,7 @@ from ..operators.messages.user_errors import Refusal
 from .atomic_write import staged
 from .materials import give_parts_materials
 from .off import read_off, write_off
+from .reading.reading_errors import reading_errors_told
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,8 @@ def load(path: Path) -> list[bpy.types.Object]:
         raise Refusal("there is no such file.")
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     # Blender looks for what is relative in the folder it was started in, whatever a script has changed to.
-    FORMATS[suffix].read(path.absolute())
+    with reading_errors_told(path):
+        FORMATS[suffix].read(path.absolute())
     objects = {
         mesh_of(obj): obj for obj in reversed(bpy.data.objects) if obj.type == "MESH" and mesh_of(obj).library is None
     }

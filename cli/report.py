@@ -7,10 +7,8 @@ from typing import NotRequired, TypedDict, cast
 
 import bpy
 
-from ..compute.errors import EngineError
 from ..compute.registration.parts.transferred_labels import FaceLabels
 from ..compute.segmentation.parts.part_labels import BranchLabels
-from ..operators.messages.user_errors import Refusal
 from .atomic_write import staged
 from .part_names import name_of_part, names_of_parts
 
@@ -73,17 +71,6 @@ def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels | FaceLabels) -> list[P
         {"id": part, "name": name_of_part(part, given), "parent": parent, "area": area, "faces": n_faces}
         for part, parent, area, n_faces in zip(*columns, strict=True)
     ]
-
-
-def problem_of(error: Exception) -> str:
-    """Return one line about what went wrong with a file."""
-    if isinstance(error, Refusal | EngineError):
-        return str(error)
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.strerror}: {error.filename}." if error.filename else f"{error.strerror}."
-    if isinstance(error, MemoryError):
-        return "there is not enough memory for this file."
-    return " ".join(f"{type(error).__name__}: {error}".split())
 
 
 def problems_of(rows: Iterable[ObjectRow]) -> str:

@@ -9,7 +9,8 @@ from typing import Protocol
 from ..operators.messages.user_errors import Refusal
 from . import formats
 from .jobs import Job
-from .report import ObjectRow, Report, Settings, path_beside, problem_of, problems_of, write_beside
+from .reading.reading_errors import problem_of
+from .report import ObjectRow, Report, Settings, path_beside, problems_of, write_beside
 from .resume import digest_of
 from .suppress_output import blender_is_quiet
 
