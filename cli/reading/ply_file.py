@@ -27,6 +27,7 @@ ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 MOST = 2**31 - 1
 # Bytes of the longest header that is looked for.
 HEADER = 1 << 20
+KEYWORDS = ("format", "element", "property")
 INDICES = ("vertex_indices", "vertex_index")
 
 
@@ -93,7 +94,8 @@ def _header(data: bytes) -> Header:
     order, elements = None, list[Element]()
     for number, line in enumerate(lines[1:-1], 2):
         words = line.split()
-        if not words or words[0] in ("comment", "obj_info"):
+        # Whatever else stands there is a comment to Blender.
+        if not words or words[0] not in KEYWORDS:
             continue
         if words[0] == "format" and len(words) == 3 and words[1] in ORDERS:
             order = ORDERS[words[1]]
