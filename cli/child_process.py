@@ -49,8 +49,7 @@ class ChildProcess:
                 # Ctrl C is for the process that the user started; it ends the others with all that they started.
                 start_new_session=True,
             )
-        self._out = open(self._paths[0], encoding="utf-8", errors="replace", newline="\n")
-        self._unfinished_line = ""
+        self._n_read = 0
         self._last_report = time.monotonic()
 
     def poll(self) -> tuple[list[Report], ProcessEnd | None]:
@@ -77,13 +76,16 @@ class ChildProcess:
         except ProcessLookupError:
             pass
         self._process.wait()
-        self._out.close()
         for path in self._paths:
             path.unlink(missing_ok=True)
 
     def _read(self) -> list[Report]:
-        *lines, self._unfinished_line = (self._unfinished_line + self._out.read()).split("\n")
-        return reports_in(lines)
+        with open(self._paths[0], "rb") as stream:
+            stream.seek(self._n_read)
+            # A line is read when it is there as a whole.
+            lines, end, _ = stream.read().rpartition(b"\n")
+        self._n_read += len(lines) + len(end)
+        return reports_in(lines.decode("utf-8", errors="replace").splitlines())
 
     def _last_errors(self) -> str:
         with open(self._paths[1], "rb") as stream:
@@ -105,5 +107,7 @@ def own_command() -> list[str]:
 def reports_in(lines: list[str]) -> list[Report]:
     """Return the reports among what a process has said; Blender says other things there."""
     return [
-        cast(Report, json.loads(line)) for line in lines if line.startswith('{"version"') and line.rstrip().endswith("}")
+        cast(Report, json.loads(line))
+        for line in lines
+        if line.startswith('{"version"') and line.rstrip().endswith("}")
     ]

@@ -53,8 +53,8 @@ class ProcessEnd:
         """Return what to tell of the file that the process was working on."""
         if self.is_from_outside:
             return (
-                f"its process ended twice before the file was done: it was ended from outside (signal {-self.code}), as "
-                f"systems do when memory runs out{MORE_MEMORY}"
+                "its process ended twice before the file was done: it was ended from outside "
+                f"(signal {-self.code}), as systems do when memory runs out; decimate its meshes{MORE_MEMORY}"
             )
         if any(word in self.errors.lower() for word in MEMORY_WORDS):
             return NO_MEMORY + MORE_MEMORY

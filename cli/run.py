@@ -7,9 +7,9 @@ from typing import TextIO
 
 from ..operators.messages.user_errors import Refusal
 from . import batch
+from .cluster import cluster_pool
 from .formats import name_of_divided, name_of_transferred
 from .jobs import Job, conflicting_jobs, jobs_of_files
-from .cluster import cluster_pool
 from .process_limits import end_with_parent, is_supervised, memory_limited
 from .process_pool import local_pool, units_of
 from .registering import Register

@@ -71,9 +71,7 @@ def _parsed(text: bytes, where: str) -> Table:
 
 def _check_tables(table: Table, folder: Path, n_binary: int) -> None:
     """Raise a Refusal if buffers, views and accessors do not lie within each other."""
-    buffers = [
-        _buffer_size(buffer, number, folder, n_binary) for number, buffer in enumerate(_rows(table, "buffers"))
-    ]
+    buffers = [_buffer_size(buffer, number, folder, n_binary) for number, buffer in enumerate(_rows(table, "buffers"))]
     views = [_view_size(view, number, buffers) for number, view in enumerate(_rows(table, "bufferViews"))]
     for number, accessor in enumerate(_rows(table, "accessors")):
         _check_accessor(accessor, number, _rows(table, "bufferViews"), views)

@@ -91,8 +91,15 @@ def _header(data: bytes) -> Header:
     if end is None:
         raise damaged('the header has no line "end_header"')
     lines = data[: end.end()].decode("latin-1").splitlines()
+    order, elements = _order_and_elements(lines)
+    if order is None:
+        raise damaged("the header does not say in which format the numbers are")
+    return Header(order, elements, len(lines), end.end())
+
+
+def _order_and_elements(lines: list[str]) -> tuple[str | None, list[Element]]:
     order, elements = None, list[Element]()
-    for number, line in enumerate(lines[1:-1], 2):
+    for number, line in enumerate(lines, 1):
         words = line.split()
         # Whatever else stands there is a comment to Blender.
         if not words or words[0] not in KEYWORDS:
@@ -105,9 +112,7 @@ def _header(data: bytes) -> Header:
             elements[-1].properties.append(column)
         else:
             raise damaged(f'line {number}: "{line.strip()[:40]}" is no line of a .ply header')
-    if order is None:
-        raise damaged("the header does not say in which format the numbers are")
-    return Header(order, elements, len(lines), end.end())
+    return order, elements
 
 
 def _property(words: list[str]) -> Property | None:
@@ -184,7 +189,7 @@ def _row_type(data: bytes, at: int, element: Element, order: str) -> np.dtype[np
 
 
 def _check_indices(column: Property, values: NDArray[np.generic], n_vertices: int, where: str) -> None:
-    if column.name in INDICES and values.size and not (0 <= values.min() and values.max() < n_vertices):
+    if column.name in INDICES and values.size and not (values.min() >= 0 and values.max() < n_vertices):
         raise damaged(f"{where}: a face has a corner that is none of the {n_vertices} vertices")
 
 

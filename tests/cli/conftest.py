@@ -38,7 +38,7 @@ def run(capfd):
         capfd.readouterr()
         command, *rest = map(str, arguments)
         is_here = command in COMMANDS and not any(option in OF_PROCESSES for option in rest)
-        code = extension.cli.main([command, *["--in-process"][: is_here], *rest])
+        code = extension.cli.main([command, *["--in-process"][:is_here], *rest])
         out, err = capfd.readouterr()
         if "--json" in arguments and out:
             assert list(SCHEMA.iter_errors(json.loads(out))) == []

@@ -48,7 +48,9 @@ def _decimal(data, at, random):
 def _number(data, at, random):
     """Another text in place of a number behind this place."""
     number = re.compile(rb"-?\d+(\.\d+)?").search(data, at)
-    return data if number is None else data[: number.start()] + TEXTS[random.integers(len(TEXTS))] + data[number.end() :]
+    return (
+        data if number is None else data[: number.start()] + TEXTS[random.integers(len(TEXTS))] + data[number.end() :]
+    )
 
 
 DAMAGES = [_cut, _flip, _drop, _repeat, _integer, _decimal, _number, _number]

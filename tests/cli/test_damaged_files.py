@@ -11,7 +11,17 @@ from tests.cli.damage import damaged
 from tests.cli.files import add_object, write_off
 from tests.shapes import star
 
-FORMATS = ["star.obj", "star.ply", "text.ply", "star.stl", "star.glb", "star.gltf", "star.fbx", "star.off", "star.blend"]
+FORMATS = [
+    "star.obj",
+    "star.ply",
+    "text.ply",
+    "star.stl",
+    "star.glb",
+    "star.gltf",
+    "star.fbx",
+    "star.off",
+    "star.blend",
+]
 RAW = re.compile(r"\b[A-Z]\w*(Error|Exception)\b|Traceback|\bError:|\.eigenparts-")
 N_SEEDS = 4
 N_SEEDS_LONG = 60
@@ -62,7 +72,7 @@ def assert_answered(run, sound, tmp_path, name, seeds):
         (tmp_path / name).write_bytes(content)
         problem = outcome(run, tmp_path / name)
         assert (tmp_path / name).read_bytes() == content
-        assert problem is None or problem.endswith(".") and not RAW.search(problem), (seed, problem)
+        assert problem is None or (problem.endswith(".") and not RAW.search(problem)), (seed, problem)
         assert not list(tmp_path.glob(".eigenparts-*"))
 
 
@@ -88,7 +98,11 @@ def assert_answered(run, sound, tmp_path, name, seeds):
         ("star.ply", lambda data: data[:-4] + b"\xff\xff\x00\x00", "none of the 42 vertices"),
         ("text.ply", lambda data: data.replace(b"face 80", b"face 81"), "after 80 of 81 rows"),
         ("text.ply", lambda data: data.replace(b"\n3 ", b"\n4 ", 1), "the row has fewer numbers than it should"),
-        ("text.ply", lambda data: data.replace(b"vertex 42", b"vertex 41"), "line 52: there are 3 numbers where 1 belong"),
+        (
+            "text.ply",
+            lambda data: data.replace(b"vertex 42", b"vertex 41"),
+            "line 52: there are 3 numbers where 1 belong",
+        ),
     ],
 )
 def test_the_sentence_says_where(run, sound, tmp_path, name, change, said):

@@ -1,4 +1,4 @@
-"""Every command ends by itself, with the right exit code, whatever it read and wrote: in processes as users start them."""
+"""Every command ends by itself, with the right exit code, whatever it read and wrote, in processes of its own."""
 
 import subprocess
 import sys

@@ -98,5 +98,7 @@ def test_a_matching_that_is_hardly_ever_right_fails_but_is_written_as_in_the_win
     (file,) = report["files"]
     assert (code, len(errors)) == (1, 1)
     assert file["objects"][0]["confidence"] < 0.05
-    assert file["error"].startswith("ring: it is matched with a confidence of 0% only, so its parts are very likely wrong")
+    assert file["error"].startswith(
+        "ring: it is matched with a confidence of 0% only, so its parts are very likely wrong"
+    )
     assert (tmp_path / "ring_parts.off").is_file()

@@ -99,7 +99,9 @@ def test_what_could_not_be_written_is_told_without_the_folder_it_is_written_in_a
     assert problem_of(RuntimeError(f"Error: Cannot open file {staged}\n")) == (
         "Blender could not write it: Cannot open file out/x_parts.obj."
     )
-    traceback = 'Error: Python: Traceback (most recent call last):\n  File "x"\nOSError: [Errno 28] No space left on device'
+    traceback = (
+        'Error: Python: Traceback (most recent call last):\n  File "x"\nOSError: [Errno 28] No space left on device'
+    )
     assert problem_of(RuntimeError(traceback)) == "Blender could not write it: No space left on device."
 
 
