@@ -20,9 +20,9 @@ SESSION_FOLDER = "blender_"
 def let_python_end() -> None:
     """Make sure that Python ends after a script that has Blender as a module.
 
-    Blender stops its threads when the module ``bpy`` is freed. Where a class is left that knows it, it is not, and
-    Blender 4.5 then waits at the end for a thread of its own for ever. `typing` remembers classes, among them those of the
-    glTF add-on, and libraries such as scipy.optimize keep alive what they refer to.
+    Blender stops its threads when the module ``bpy`` is freed. Where a class is left that knows it, it is not freed,
+    and Blender 4.5 then waits at the end for a thread of its own for ever. `typing` remembers classes, among them
+    those of the glTF add-on, and libraries such as scipy.optimize keep alive what they refer to.
     """
     atexit.register(_forget_types)
 
