@@ -6,12 +6,15 @@ from collections.abc import Sequence
 import bpy
 
 from ..operators.messages.user_errors import MISSING_SCIPY, is_engine_complete
+from .process_end import let_python_end
 
 _handles: list[object] = []
 
 
 def main(argv: Sequence[str]) -> int:
     """Run one command and return its exit code: 0, 1 if a file failed, 2 if the arguments are wrong."""
+    if is_module():
+        let_python_end()
     if not is_engine_complete():
         sys.stderr.write(MISSING_SCIPY + "\n")
         return 1
@@ -33,7 +36,9 @@ def is_module() -> bool:
 
 def register() -> None:
     # As a module, Blender would never call the command, and end with a crash because it is still there.
-    if not is_module():
+    if is_module():
+        let_python_end()
+    else:
         _handles.append(bpy.utils.register_cli_command("eigenparts", main))
 
 

@@ -8,11 +8,14 @@ from typing import TypeAlias
 from .. import compute
 from ..operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS_OF_FILES
 from .formats import FORMATS
+from .process_limits import CAN_LIMIT_MEMORY
 
 EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
 LAYERS = tuple(kind.lower() for kind in LAYERS_OF_FILES)
 # Seconds of the longest time limit: a week.
 LONGEST = 604_800
+# Gigabytes that no machine has.
+LARGEST = 1_000_000
 FILE_KINDS = f"Formats: {' '.join(FORMATS)}."
 
 
@@ -24,8 +27,10 @@ def parse(argv: list[str]) -> argparse.Namespace:
     for add in (_add_segment, _add_register, _add_transfer, _add_batch):
         add(commands)
     options = parser.parse_args(argv)
-    if options.timeout and not (options.jobs or options.scheduler):
-        parser.error("--timeout ends processes, so it needs --jobs or --scheduler")
+    if options.timeout and options.in_process:
+        parser.error("--timeout ends processes, so it does not go with --in-process")
+    if options.memory_limit and not CAN_LIMIT_MEMORY:
+        parser.error("--memory-limit needs Linux: this system cannot limit the memory of a process")
     if options.command in ("register", "transfer") and options.source is None:
         options.source = options.files[0]
     return options
@@ -149,14 +154,32 @@ def _add_execution(command: argparse.ArgumentParser) -> None:
     processes = command.add_mutually_exclusive_group()
     processes.add_argument("--jobs", metavar="N", type=_positive, help="do the files in N processes")
     processes.add_argument(
-        "--scheduler", metavar="ADDRESS", help="do the files on a dask cluster, such as tcp://host:8786"
+        "--scheduler",
+        metavar="ADDRESS",
+        help="do the files on a dask cluster, such as tcp://host:8786; whoever runs that scheduler can run any command "
+        "as you, so name only one that you trust with your account",
+    )
+    processes.add_argument(
+        "--in-process",
+        action="store_true",
+        help="do the files in this process: faster for small ones, but a file that crashes Blender ends all; otherwise "
+        "those of a batch have a process each, and several that were named one that is started anew after a crash",
     )
     command.add_argument(
         "--timeout",
         metavar="SECONDS",
         type=_seconds,
-        help="a file that takes longer has failed; with --jobs or --scheduler, each file then has a process of its own",
+        help="a file that takes longer has failed, and the others go on; otherwise an hour",
     )
+    command.add_argument(
+        "--memory-limit",
+        metavar="GB",
+        type=_gigabytes,
+        help="a file that takes more memory has failed, and the others go on; otherwise what is free, shared among the "
+        "processes (Linux only)",
+    )
+    # Of a process that goes on behind a file of the same call: the first number for parts that the reference has not.
+    command.add_argument("--first-free", type=int, default=0, help=argparse.SUPPRESS)
     command.add_argument(
         "--worker-command",
         metavar="COMMAND",
@@ -177,6 +200,13 @@ def _seconds(text: str) -> float:
     if not 0 < seconds <= LONGEST:
         raise argparse.ArgumentTypeError(f"must be more than 0 and at most {LONGEST}")
     return seconds
+
+
+def _gigabytes(text: str) -> float:
+    gigabytes = float(text)
+    if not 0 < gigabytes < LARGEST:
+        raise argparse.ArgumentTypeError(f"must be more than 0 and less than {LARGEST}")
+    return gigabytes
 
 
 def _positive(text: str) -> int:

@@ -6,12 +6,13 @@ usage: python -P launch.py FOLDER_OF_SCIPY COMMAND...
 import importlib.util
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 PACKAGE = "eigenparts"
 
 
-def main(arguments: list[str]) -> int:
-    """Run a command with the package that this file is part of."""
+def main(arguments: list[str]) -> NoReturn:
+    """Run a command with the package that this file is part of, and end with its exit code."""
     folder_of_scipy, *argv = arguments
     # An extension has its libraries in a folder that only Blender's preferences know.
     sys.path.append(folder_of_scipy)
@@ -22,8 +23,8 @@ def main(arguments: list[str]) -> int:
     package = importlib.util.module_from_spec(spec)
     sys.modules[PACKAGE] = package
     spec.loader.exec_module(package)
-    return package.cli.main(argv)
+    package.cli.process_end.end_process(package.cli.main(argv))
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(sys.argv[1:])

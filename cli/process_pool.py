@@ -1,39 +1,35 @@
-"""Do files in processes of their own, here or on a cluster, so that a crash takes one file with it at most.
+"""Do files in processes of their own, so that one that crashes, hangs or takes all memory costs nothing but itself.
 
-Each process is this command line once more. What starts and awaits it may be any ``concurrent.futures.Executor``:
-threads here, or the workers of a cluster, which then need nothing of Eigenparts in their own memory.
+Each process is this command line once more, here or on a cluster.
 """
 
 import argparse
-import json
 import os
-import subprocess
-import sys
-from collections.abc import Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+import tempfile
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
-from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
 
-import bpy
-
-from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
 from .atomic_write import remove_stale
+from .child_process import GRACE, ChildProcess, own_command
 from .jobs import Job
+from .process_limits import SUPERVISED, memory_share
+from .process_verdict import ProcessEnd, too_slow
 from .report import Report, without_version
 from .run_serial import failed_report
 
-# A process does up to so many files, as it takes a second or two to start.
+# A process that does several files does up to so many.
 MOST_FILES = 16
 # And no more than this share of what each process will do in all, so that none is left with all the rest.
 SHARE = 1 / 4
-# Processes of a cluster, as far as that share is concerned; how many it has is nobody's business here.
-CLUSTER = 16
-# Seconds to wait for its scheduler.
-PATIENCE = 10
+# Seconds that a file may take if nobody says otherwise.
+LONG = 3600.0
+# Seconds between two looks at the processes.
+PAUSE = 0.02
 # The options that a process is given, besides the layers of a transfer.
 OPTIONS = {
     "--object": "object",
@@ -45,18 +41,18 @@ OPTIONS = {
     "--mode": "mode",
     "--source": "source",
     "--reference": "reference",
+    "--memory-limit": "memory_limit",
 }
 THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 @dataclass(frozen=True)
 class Unit:
-    """The files that one process does.
+    """The files that one process does, one after the other.
 
     Attributes
     ----------
     jobs : tuple of Job
-        Their results go into one folder.
     was_tried : bool
         Whether a process already ended while it worked on the first of them.
     """
@@ -66,172 +62,138 @@ class Unit:
 
 
 @dataclass
+class _Worker:
+    """A process at work on a unit."""
+
+    process: ChildProcess
+    unit: Unit
+    n_done: int = 0
+
+    @property
+    def left(self) -> tuple[Job, ...]:
+        return self.unit.jobs[self.n_done :]
+
+
+@dataclass
 class ProcessPool:
-    """Processes that do files, each of them this command line once more.
+    """Processes of this machine that do files.
 
     Attributes
     ----------
-    executor : Executor
-    command : list of str
-        What starts this command line on the machine that a process runs on.
     arguments : list of str
         The command and its options.
     n_processes : int
-    environment : dict, optional
-        Of the processes; the one that they find if None.
-    timeout : float, optional
-        Seconds that a process has, which then does one file only.
+    timeout : float
+        Seconds that a file may take.
+    folder : Path
+        For what the processes say.
     """
 
-    executor: Executor
-    command: list[str]
     arguments: list[str]
     n_processes: int
-    environment: dict[str, str] | None = None
-    timeout: float | None = None
-    _under_way: dict["Future[subprocess.CompletedProcess[str]]", Unit] = field(default_factory=dict)
+    timeout: float
+    folder: Path
+    _workers: list[_Worker] = field(default_factory=list)
+    _waiting: deque[Unit] = field(default_factory=deque)
+    _first_free: int = 0
 
-    def run(self, jobs: Sequence[Job]) -> Iterator[Report]:
-        """Yield a report for each file as soon as its process has ended."""
-        for unit in _units(jobs, _most_files(len(jobs), self.n_processes) if self.timeout is None else 1):
-            self._submit(unit)
+    def run(self, units: Iterable[Unit]) -> Iterator[Report]:
+        """Yield a report for each file as soon as it is done."""
+        self._waiting.extend(units)
         try:
-            while self._under_way:
-                done, _ = wait(self._under_way, return_when=FIRST_COMPLETED)
-                for future in done:
-                    yield from self._harvest(self._under_way.pop(future), future)
+            while self._waiting or self._workers:
+                yield from self._fill()
+                for worker in tuple(self._workers):
+                    yield from self._look_at(worker)
+                time.sleep(PAUSE)
         finally:
-            # After an interrupt, what has not begun is not begun any more.
-            for future in self._under_way:
-                future.cancel()
+            for worker in self._workers:
+                worker.process.kill()
+                clear_up(worker.left)
 
-    def _submit(self, unit: Unit) -> None:
-        files = [str(job.path.absolute()) for job in unit.jobs]
-        output = ["--output", str(unit.jobs[0].target.parent.absolute()), "--json-lines"]
-        call = partial(
-            subprocess.run,
-            [*self.command, *self.arguments, *output, "--", *files],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            env=self.environment,
-            timeout=self.timeout,
-        )
-        self._under_way[self.executor.submit(call)] = unit
+    def _fill(self) -> Iterator[Report]:
+        while self._waiting and len(self._workers) < self.n_processes:
+            unit = self._waiting.popleft()
+            try:
+                self._workers.append(_Worker(self._start(unit), unit))
+            except OSError as error:
+                for job in unit.jobs:
+                    yield failed_report(job, f"no process could be started: {error.strerror}: {error.filename}.")
 
-    def _harvest(self, unit: Unit, future: "Future[subprocess.CompletedProcess[str]]") -> Iterator[Report]:
-        try:
-            process = future.result()
-        except subprocess.TimeoutExpired:
-            # It was killed, and a second try would take as long.
-            _clear_up(unit.jobs[0])
-            yield failed_report(unit.jobs[0], f"it took longer than {self.timeout:g} seconds.")
+    def _start(self, unit: Unit) -> ChildProcess:
+        share = str(max(1, (os.cpu_count() or 1) // self.n_processes))
+        environment = {**dict.fromkeys(THREAD_SETTINGS, share), **os.environ, SUPERVISED: "1"}
+        numbering = [f"--first-free={self._first_free}"] if self._first_free else []
+        return ChildProcess([*own_command(), *self.arguments, *numbering, *files_of(unit)], environment, self.folder)
+
+    def _look_at(self, worker: _Worker) -> Iterator[Report]:
+        """Yield what a process has done, and give what it left to another one if it ended."""
+        reports, end = worker.process.poll()
+        for job, report in zip(worker.left, reports, strict=False):
+            worker.n_done += 1
+            self._first_free = max(self._first_free, _first_free_behind(report))
+            yield as_given(report, job)
+        if end is None and worker.process.seconds <= (self.timeout if worker.left else GRACE):
             return
-        except (Exception, CancelledError) as error:
-            # The process could not be started, or the machine is gone.
-            yield from self._try_again(unit, f"{type(error).__name__}: {error}")
-            return
-        reports = _reports_in(process.stdout)
-        for job, report in zip(unit.jobs, reports, strict=False):
-            yield _as_given(report, job)
-        if len(reports) < len(unit.jobs):
-            yield from self._try_again(Unit(unit.jobs[len(reports) :], unit.was_tried), _end_of(process))
+        self._workers.remove(worker)
+        worker.process.kill()
+        if worker.left:
+            yield from self._end(worker, end)
 
-    def _try_again(self, unit: Unit, problem: str) -> Iterator[Report]:
-        """Give the file at which a process ended a second chance, alone, and the others behind it a new process."""
-        first, *others = unit.jobs
-        _clear_up(first)
-        if unit.was_tried:
-            yield failed_report(first, f"its process ended twice before the file was done: {problem}")
-        else:
-            self._submit(Unit((first,), was_tried=True))
+    def _end(self, worker: _Worker, end: ProcessEnd | None) -> Iterator[Report]:
+        """Tell of the file at which a process ended, or try it again if others may be to blame, and do the rest."""
+        job, *others = worker.left
+        clear_up(worker.left)
+        was_tried = worker.unit.was_tried and not worker.n_done
+        is_innocent = end is not None and (end.is_from_outside or worker.n_done > 0)
+        if is_innocent and not was_tried:
+            self._waiting.appendleft(Unit(worker.left, was_tried=True))
+            return
         if others:
-            self._submit(Unit(tuple(others)))
+            self._waiting.appendleft(Unit(tuple(others)))
+        yield failed_report(job, too_slow(self.timeout) if end is None else end.sentence())
 
 
 @contextmanager
 def local_pool(options: argparse.Namespace) -> Iterator[ProcessPool]:
     """Yield a pool of processes on this machine."""
-    share = str(max(1, (os.cpu_count() or 1) // options.jobs))
-    environment = {**dict.fromkeys(THREAD_SETTINGS, share), **os.environ}
-    with ThreadPoolExecutor(options.jobs) as executor:
-        yield ProcessPool(
-            executor=executor,
-            command=own_command(),
-            arguments=_arguments_of(options),
-            n_processes=options.jobs,
-            environment=environment,
-            timeout=options.timeout,
-        )
+    n_processes = options.jobs or 1
+    memory_limit = options.memory_limit or memory_share(n_processes)
+    limited = argparse.Namespace(**vars(options) | {"memory_limit": memory_limit})
+    with tempfile.TemporaryDirectory(prefix="eigenparts-", ignore_cleanup_errors=True) as folder:
+        yield ProcessPool(arguments_of(limited), n_processes, options.timeout or LONG, Path(folder))
 
 
-@contextmanager
-def cluster_pool(options: argparse.Namespace) -> Iterator[ProcessPool]:
-    """Yield a pool of processes on the machines of a dask cluster."""
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise Refusal('--scheduler needs dask in this Python: pip install "distributed".') from error
-    try:
-        # Dask has no types here.
-        client = Client(options.scheduler, timeout=PATIENCE)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError) as error:
-        raise Refusal(f"no dask scheduler answers at {options.scheduler}.") from error
-    with client, client.get_executor() as executor:  # type: ignore[no-untyped-call]
-        command = options.worker_command or own_command()
-        yield ProcessPool(
-            executor=executor,
-            command=command,
-            arguments=_arguments_of(options),
-            n_processes=CLUSTER,
-            timeout=options.timeout,
-        )
+def units_of(jobs: Sequence[Job], options: argparse.Namespace) -> Iterator[Unit]:
+    """Yield what each process does: one file of a batch, many of those that were named, as starting takes a second."""
+    if options.command == "batch":
+        size = 1
+    elif options.jobs:
+        size = max(1, min(MOST_FILES, int(len(jobs) * SHARE / options.jobs)))
+    else:
+        size = max(1, len(jobs))
+    for _, group in groupby(jobs, key=lambda job: job.target.parent):
+        same_folder = tuple(group)
+        yield from (Unit(same_folder[start : start + size]) for start in range(0, len(same_folder), size))
 
 
-def _arguments_of(options: argparse.Namespace) -> list[str]:
+def arguments_of(options: argparse.Namespace) -> list[str]:
     """Return the command and the options that decide what becomes of a file, to give them to another process."""
     command = "transfer" if options.command == "transfer" else "register" if options.source else "segment"
     given = vars(options) | {"source": options.source and options.source.absolute()}
     values = {name: given[key] for name, key in OPTIONS.items() if given.get(key) is not None}
     layers = [f"--layers={','.join(options.layers)}"] if command == "transfer" else []
     switches = [f"--{name}" for name in ("mirrored", "overwrite") if getattr(options, name)]
-    return [command, *(f"{name}={value}" for name, value in values.items()), *layers, *switches]
+    return [command, "--in-process", *(f"{name}={value}" for name, value in values.items()), *layers, *switches]
 
 
-def own_command() -> list[str]:
-    """Return what starts this command line on this machine: the application, or Python with Blender as a module."""
-    if bpy.app.binary_path:
-        return [bpy.app.binary_path, "--background", "--command", "eigenparts"]
-    scipy = find_spec("scipy")
-    if scipy is None or scipy.origin is None:
-        raise Refusal(MISSING_SCIPY)
-    folder_of_scipy = Path(scipy.origin).parents[1]
-    return [sys.executable, "-P", str(Path(__file__).with_name("launch.py")), str(folder_of_scipy)]
+def files_of(unit: Unit) -> list[str]:
+    """Return the arguments that say which files a process does, and where their results go."""
+    output = str(unit.jobs[0].target.parent.absolute())
+    return ["--output", output, "--json-lines", "--", *(str(job.path.absolute()) for job in unit.jobs)]
 
 
-def _most_files(n_jobs: int, n_processes: int) -> int:
-    """Return how many files a process does, so that all have enough to do."""
-    return max(1, min(MOST_FILES, int(n_jobs * SHARE / n_processes)))
-
-
-def _units(jobs: Sequence[Job], size: int) -> Iterator[Unit]:
-    for _, group in groupby(jobs, key=lambda job: job.target.parent):
-        same_folder = tuple(group)
-        yield from (Unit(same_folder[start : start + size]) for start in range(0, len(same_folder), size))
-
-
-def _clear_up(job: Job) -> None:
-    """Remove what a process left that ended while it wrote a result."""
-    remove_stale(job.target.parent)
-
-
-def _reports_in(text: str) -> list[Report]:
-    """Return the reports among what a process has said; Blender says other things there."""
-    return [json.loads(line) for line in text.splitlines() if line.startswith('{"version"') and line.endswith("}")]
-
-
-def _as_given(report: Report, job: Job) -> Report:
+def as_given(report: Report, job: Job) -> Report:
     """Return a report with paths as the user gave them."""
     given = without_version(report)
     given["file"] = str(job.path)
@@ -240,7 +202,13 @@ def _as_given(report: Report, job: Job) -> Report:
     return given
 
 
-def _end_of(process: "subprocess.CompletedProcess[str]") -> str:
-    last_line = process.stderr.strip().splitlines()[-1:]
-    cause = f"signal {-process.returncode}" if process.returncode < 0 else f"exit code {process.returncode}"
-    return ", ".join([cause, *last_line]) + "."
+def clear_up(jobs: Iterable[Job]) -> None:
+    """Remove what a process left that ended while it wrote a result."""
+    for folder in {job.target.parent for job in jobs}:
+        remove_stale(folder)
+
+
+def _first_free_behind(report: Report) -> int:
+    """Return a number above those of all parts of a file."""
+    labels = [part["id"] for row in report.get("objects", ()) for part in row.get("parts", ())]
+    return 1 + max(labels, default=-1)

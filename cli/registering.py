@@ -39,7 +39,7 @@ class Register:
 
     def __init__(self, options: argparse.Namespace) -> None:
         self._options = options
-        self._first_free = 0
+        self._first_free = options.first_free
 
     @cached_property
     def settings(self) -> Settings:

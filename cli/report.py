@@ -7,14 +7,15 @@ from typing import NotRequired, TypedDict, cast
 
 import bpy
 
-from ..compute.errors import EngineError
 from ..compute.registration.parts.transferred_labels import FaceLabels
 from ..compute.segmentation.parts.part_labels import BranchLabels
-from ..operators.messages.user_errors import Refusal
 from .part_names import name_of_part, names_of_parts
 
 # Raised when the layout of the report changes; report.schema.json describes it.
 VERSION = 1
+
+# What is matched with less counts as failed: it is hardly ever right.
+LEAST_CONFIDENCE = 0.05
 
 # All that the results of a command depend on besides the files.
 Settings = dict[str, object]
@@ -89,20 +90,20 @@ def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels | FaceLabels) -> list[P
     ]
 
 
-def problem_of(error: Exception) -> str:
-    """Return one line about what went wrong with a file."""
-    if isinstance(error, Refusal | EngineError):
-        return str(error)
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.strerror}: {error.filename}." if error.filename else f"{error.strerror}."
-    if isinstance(error, MemoryError):
-        return "there is not enough memory for this file."
-    return " ".join(f"{type(error).__name__}: {error}".split())
-
-
 def problems_of(rows: Iterable[ObjectRow]) -> str:
-    """Return one line about the objects of a file that failed, empty if none did."""
-    return " ".join(f"{row['name']}: {row['error']}" for row in rows if "error" in row)
+    """Return one line about the objects of a file that failed or are very likely wrong, empty if there are none."""
+    problems = ((row["name"], row.get("error") or _doubt(row)) for row in rows)
+    return " ".join(f"{name}: {problem}" for name, problem in problems if problem)
+
+
+def _doubt(row: ObjectRow) -> str:
+    if row.get("confidence", 1.0) >= LEAST_CONFIDENCE:
+        return ""
+    what = "layers" if "layers" in row else "parts"
+    return (
+        f"it is matched with a confidence of {row['confidence']:.0%} only, so its {what} are very likely wrong; "
+        "the result was written all the same, look at it before you use it."
+    )
 
 
 def without_version(report: Report) -> Report:

@@ -7,11 +7,14 @@ from typing import TextIO
 
 from ..operators.messages.user_errors import Refusal
 from . import batch
+from .cluster import cluster_pool
 from .formats import name_of_divided, name_of_transferred
 from .jobs import Job, jobs_of_files, refused_jobs
-from .process_pool import cluster_pool, local_pool
+from .process_limits import end_with_parent, is_supervised, memory_limited
+from .process_pool import local_pool, units_of
+from .reading.reading_errors import problem_of
 from .registering import Register
-from .report import Report, problem_of
+from .report import Report
 from .reporters import ProgressLine, reporter_for
 from .run_serial import Command, failed_report, run_in_this_process
 from .segmenting import Segment
@@ -20,6 +23,8 @@ from .transferring import Transfer
 
 def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
     """Do what was asked for, tell about each file, and return 1 if any failed."""
+    if is_supervised():
+        end_with_parent()
     do = _run_batch if options.command == "batch" else _run_files
     try:
         return do(options, out, err)
@@ -70,11 +75,20 @@ def _reports(jobs: list[Job], options: argparse.Namespace, finished: Container[J
     if options.scheduler:
         with cluster_pool(options) as pool:
             yield from pool.run(free)
-    elif options.jobs:
+    elif _needs_processes(free, options):
         with local_pool(options) as pool:
-            yield from pool.run(free)
+            yield from pool.run(units_of(free, options))
     else:
-        yield from run_in_this_process(free, _command(options))
+        with memory_limited(options.memory_limit):
+            yield from run_in_this_process(free, _command(options))
+
+
+def _needs_processes(jobs: list[Job], options: argparse.Namespace) -> bool:
+    """Whether files are done in other processes: one that ends its process would otherwise take more with it."""
+    if options.in_process:
+        return False
+    is_asked_for = options.jobs or options.timeout or options.memory_limit
+    return bool(jobs) and (options.command == "batch" or len(jobs) > 1 or is_asked_for is not None)
 
 
 def _command(options: argparse.Namespace) -> Command:

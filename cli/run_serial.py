@@ -11,7 +11,8 @@ from . import formats
 from .atomic_write import check_room, remove_stale, stage_in
 from .digests import digest_of
 from .jobs import Job
-from .report import ObjectRow, Report, Settings, problem_of, problems_of
+from .reading.reading_errors import problem_of
+from .report import ObjectRow, Report, Settings, problems_of
 from .suppress_output import blender_is_quiet
 from .targets import publish, refuse_before_work
 

@@ -6,12 +6,17 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 
+from .process_limits import is_supervised
+
 
 @contextmanager
 def blender_is_quiet() -> Iterator[None]:
-    """Send what Blender writes meanwhile to nowhere, be it through Python or below it."""
+    """Send what Blender writes meanwhile to nowhere, be it through Python or below it.
+
+    What is written to stderr below Python is kept for a process that waits for this one: it may be why this one ends.
+    """
     flush_streams()
-    kept = [(stream, os.dup(stream)) for stream in (1, 2)]
+    kept = [(stream, os.dup(stream)) for stream in ((1,) if is_supervised() else (1, 2))]
     try:
         with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
             for stream, _ in kept:

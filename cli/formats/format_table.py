@@ -10,6 +10,7 @@ import bpy
 
 from ...operators.blender.known_values import mesh_of
 from ...operators.messages.user_errors import Refusal
+from ..reading.reading_errors import reading_errors_told
 from . import fbx, gltf, obj, off_mesh, ply, stl
 from .own_attributes import claim_own_attributes
 from .repairs import WHOLE_FILE, Repairs
@@ -53,7 +54,8 @@ def load(path: Path) -> OpenFile:
         raise Refusal("there is no such file.")
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     # Blender looks for what is relative in the folder it was started in, whatever a script has changed to.
-    repairs = FORMATS[suffix].read(path.absolute())
+    with reading_errors_told(path):
+        repairs = FORMATS[suffix].read(path.absolute())
     return OpenFile(_objects_with_meshes(), repairs)
 
 

@@ -14,6 +14,8 @@ bpy = pytest.importorskip("bpy", reason="needs Blender as a Python module")
 
 from tests.cli.files import write_off  # noqa: E402
 
+COMMANDS = ("segment", "register", "transfer", "batch")
+OF_PROCESSES = ("--jobs", "--scheduler", "--timeout", "--memory-limit", "--in-process")
 SCHEMA = Draft202012Validator(json.loads(Path(__file__).parents[2].joinpath("cli/report.schema.json").read_text()))
 
 
@@ -25,13 +27,18 @@ def fresh_scene():
 
 @pytest.fixture
 def run(capfd):
-    """Run the command line; returns the exit code, the lines on stdout (or the report) and those on stderr."""
+    """Run the command line in this process, unless the options are about processes, as starting one takes a second.
+
+    It returns the exit code, the lines on stdout (or the report) and those on stderr.
+    """
 
     def call(*arguments):
         extension = load_extension()
         importlib.import_module("eigenparts.cli.suppress_output").flush_streams()
         capfd.readouterr()
-        code = extension.cli.main([str(argument) for argument in arguments])
+        command, *rest = map(str, arguments)
+        is_here = command in COMMANDS and not any(option in OF_PROCESSES for option in rest)
+        code = extension.cli.main([command, *["--in-process"][:is_here], *rest])
         out, err = capfd.readouterr()
         if "--json" in arguments and out:
             assert list(SCHEMA.iter_errors(json.loads(out))) == []

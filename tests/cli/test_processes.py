@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -11,8 +12,8 @@ import bpy
 import psutil
 import pytest
 
-from tests.cli.files import add_object, write_blend, write_off
-from tests.shapes import star
+from tests.cli.files import add_object, turned, write_blend, write_off
+from tests.shapes import icosphere, star
 
 # Seconds that are enough for a small star on a machine that is busy.
 TIME_LIMIT = 40
@@ -113,16 +114,17 @@ def test_a_file_that_takes_too_long_has_failed_and_the_others_go_on(run, stand_i
     code, _, errors = run("batch", tmp_path, "--jobs", 3, "--timeout", 8)
     told = dict(line.removeprefix(f"{tmp_path}/").split(": ", 1) for line in errors if ".off: " in line)
     assert (code, sorted(told)) == (1, names)
-    assert told["endless1.off"] == told["endless2.off"] == "it took longer than 8 seconds."
+    assert told["endless1.off"] == told["endless2.off"]
+    assert told["endless1.off"].startswith("it took longer than 8 seconds; ")
     assert "ended twice" in told["deadly.off"]
     assert all("done by the stand-in" in told[name] for name in names[3:])
     assert not list(tmp_path.glob(".eigenparts-*"))
 
 
 def test_a_time_limit_needs_processes(run, star_off):
-    code, _, errors = run("segment", star_off, "--timeout", 5)
+    code, _, errors = run("segment", star_off, "--timeout", 5, "--in-process")
     assert code == 2
-    assert "needs --jobs or --scheduler" in errors[-1]
+    assert "does not go with --in-process" in errors[-1]
     assert run("segment", star_off, "--jobs", 1, "--timeout", 0)[0] == 2
 
 
@@ -154,7 +156,7 @@ def test_a_worker_that_hangs_is_ended_and_the_others_go_on(command_line, folder)
     victims[0].suspend()
     out, err = batch.communicate(timeout=10 * TIME_LIMIT)
     assert batch.returncode == 1
-    assert err.count(f"it took longer than {TIME_LIMIT} seconds.") == 1, err
+    assert err.count(f"it took longer than {TIME_LIMIT} seconds; ") == 1, err
     assert out.count(", written to ") == len(texts_of(folder)) == 5
     assert not list(folder.rglob(".eigenparts-*"))
     assert not victims[0].is_running()
@@ -247,9 +249,112 @@ def address_of(address_file):
 
 def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tmp_path):
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli import cluster
 
-    monkeypatch.setattr(process_pool, "PATIENCE", 1)
+    monkeypatch.setattr(cluster, "PATIENCE", 1)
     code, _, errors = run("segment", star_off, "--scheduler", "tcp://127.0.0.1:9", "--output", tmp_path)
     assert (code, errors) == (1, ["no dask scheduler answers at tcp://127.0.0.1:9."])
     assert os.listdir(tmp_path) == []
+
+
+@pytest.fixture
+def crashing(run, monkeypatch):
+    """Processes that crash at some files, and say what Blender says when memory runs out at others."""
+    run("--help")
+    from eigenparts.cli import process_pool
+
+    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", CRASHES])
+
+
+CRASHES = """
+import json, os, signal, sys
+for file in sys.argv[sys.argv.index("--") + 1:]:
+    if "full" in file:
+        print("Malloc returns null: len=99 in mesh, total 5", file=sys.stderr, flush=True)
+    if "bad" in file or "full" in file or "after" in file and len(sys.argv) - sys.argv.index("--") > 2:
+        open(file, "a").write("tried ")
+        os.kill(os.getpid(), signal.SIGSEGV)
+    print(json.dumps({"version": 1, "file": file, "error": "done by the stand-in.", "seconds": 0.0}), flush=True)
+"""
+
+
+def test_a_crash_is_told_in_words_after_one_try(run, crashing, tmp_path):
+    for name in ("a.off", "bad.off", "c.off", "full.off"):
+        (tmp_path / name).touch()
+    code, _, errors = run("batch", tmp_path, "--timeout", 60)
+    told = dict(line.removeprefix(f"{tmp_path}/").split(": ", 1) for line in errors if ".off: " in line)
+    assert code == 1
+    assert told["a.off"] == told["c.off"] == "done by the stand-in."
+    assert "Blender crashed while working on it (signal 11: " in told["bad.off"]
+    assert told["full.off"].startswith("there is not enough memory for this file; ")
+    assert (tmp_path / "bad.off").read_text() == "tried "
+
+
+def test_named_files_share_a_process_until_one_crashes(run, crashing, tmp_path):
+    """A file that crashes behind others may be innocent, so it gets a process that had no other before."""
+    names = ["a.off", "after.off", "bad.off", "d.off"]
+    for name in names:
+        (tmp_path / name).touch()
+    _, report, _ = run("segment", *(tmp_path / name for name in names), "--json", "--timeout", 60)
+    assert [file["file"] for file in report["files"]] == [str(tmp_path / name) for name in names]
+    assert ["stand-in" in file["error"] for file in report["files"]] == [True, False, False, True]
+
+
+def test_a_file_beyond_the_limit_of_memory_has_failed_and_says_so(command_line, tmp_path):
+    files = [write_off(star(3, 2), tmp_path / "a.off"), write_off(star(5, 5), tmp_path / "large.off")]
+    files.append(write_off(star(4, 2), tmp_path / "z.off"))
+    process = command_line("segment", *files, "--memory-limit", "0.02")
+    out, err = process.communicate(timeout=300)
+    assert (process.returncode, out.count(", written to ")) == (1, 2), err
+    assert err.startswith(f"{files[1]}: there is not enough memory for this file; ")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals of this kind")
+def test_an_interrupted_batch_leaves_no_process_behind(command_line, folder):
+    batch = command_line("batch", folder, "--jobs", 2)
+    children = wait_for(lambda: psutil.Process(batch.pid).children())
+    batch.send_signal(signal.SIGINT)
+    _, err = batch.communicate(timeout=60)
+    assert (batch.returncode, "Interrupted" in err) == (1, True)
+    assert not any(child.is_running() for child in children)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends the processes of a process that was killed")
+def test_a_killed_batch_leaves_no_process_behind(command_line, folder):
+    batch = command_line("batch", folder)
+    wait_for(lambda: reports_in(folder))
+    (child,) = wait_for(lambda: psutil.Process(batch.pid).children())
+    time.sleep(3)
+    batch.kill()
+    batch.communicate()
+    wait_for(lambda: not child.is_running())
+
+
+def test_parts_of_their_own_have_numbers_of_their_own_behind_a_crash(run, monkeypatch, tmp_path):
+    """As in one process, though another one does the files behind the one that crashed."""
+    run("--help")
+    from eigenparts.cli import process_pool
+
+    files = [write_off(turned(star(5, 2), seed=seed), tmp_path / f"{seed}.off") for seed in (1, 2)]
+    ball = write_off(icosphere(2), tmp_path / "ball.off")
+    (tmp_path / "bad.off").write_text("OFF\n")
+    own = process_pool.own_command()
+    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", WRAPPER, *own])
+    named = [files[0], tmp_path / "bad.off", files[1]]
+    _, report, _ = run("register", *named, "--source", ball, "--json", "--timeout", 200)
+    rows = [file["objects"][0]["parts"] for file in report["files"] if "objects" in file]
+    labels = [part["id"] for parts in rows for part in parts if not part["matched"]]
+    assert len(rows) == 2
+    assert len(labels) == len(set(labels)) > 2
+
+
+# Starts the command line with the files before a bad one, or ends as if that one had crashed it.
+WRAPPER = """
+import os, subprocess, sys
+command, files = sys.argv[1:sys.argv.index("--") + 1], sys.argv[sys.argv.index("--") + 1:]
+before = [file for file in files[:[*map(os.path.basename, files), "bad.off"].index("bad.off")]]
+if before:
+    subprocess.run([*command, *before])
+if len(before) < len(files):
+    os.abort()
+"""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.cli.files import add_object, turned, write_blend, write_off
-from tests.shapes import icosphere, star
+from tests.shapes import icosphere, star, torus
 
 
 def areas_of_parts(row):
@@ -89,3 +89,16 @@ def test_a_bad_file_does_not_stop_the_others(run, unequal, tmp_path):
     code, lines, errors = run("register", source, broken, write_off(turned(unequal), tmp_path / "c.off"))
     assert (code, len(lines), len(errors)) == (1, 2, 1)
     assert errors[0].startswith(f"{broken}: ")
+
+
+def test_a_matching_that_is_hardly_ever_right_fails_but_is_written_as_in_the_window(run, unequal, tmp_path):
+    ring = write_off(torus(), tmp_path / "ring.off")
+    source = write_off(unequal, tmp_path / "star.off")
+    code, report, errors = run("register", ring, "--source", source, "--json")
+    (file,) = report["files"]
+    assert (code, len(errors)) == (1, 1)
+    assert file["objects"][0]["confidence"] < 0.05
+    assert file["error"].startswith(
+        "ring: it is matched with a confidence of 0% only, so its parts are very likely wrong"
+    )
+    assert (tmp_path / "ring_parts.off").is_file()

@@ -21,7 +21,8 @@ SKIPPED = DONE | {"file": "old.off", "skipped": True}
 @pytest.fixture(scope="module")
 def cli():
     load_extension()
-    return {name: import_module(f"eigenparts.cli.{name}") for name in ("report", "reporters", "arguments")}
+    names = ("report", "reporters", "arguments", "reading.reading_errors")
+    return {name: import_module(f"eigenparts.cli.{name}") for name in names}
 
 
 def told(cli, options, reports):
@@ -80,13 +81,34 @@ def test_a_log_has_the_beginning_and_the_end(cli):
 
 
 def test_what_went_wrong_is_one_line_that_names_the_file(cli):
-    problem_of = cli["report"].problem_of
+    problem_of = cli["reading.reading_errors"].problem_of
     assert problem_of(FileNotFoundError(2, "No such file or directory", "x.off")) == (
         "No such file or directory: x.off."
     )
     assert problem_of(OSError(28, "No space left on device")) == "No space left on device."
-    assert problem_of(MemoryError()) == "there is not enough memory for this file."
-    assert problem_of(ValueError("two\n  lines")) == "ValueError: two lines"
+    assert problem_of(MemoryError()).startswith("there is not enough memory for this file; decimate its meshes")
+    assert problem_of(ValueError("two\n  lines")) == (
+        "something went wrong that should not; please report it, with the file if you can."
+    )
+
+
+def test_what_could_not_be_written_is_told_without_the_folder_it_is_written_in_at_first(cli):
+    problem_of = cli["reading.reading_errors"].problem_of
+    staged = "out/.eigenparts-x_parts.obj/x_parts.obj"
+    assert problem_of(OSError(13, "Permission denied", staged)) == "Permission denied: out/x_parts.obj."
+    assert problem_of(RuntimeError(f"Error: Cannot open file {staged}\n")) == (
+        "Blender could not write it: Cannot open file out/x_parts.obj."
+    )
+    traceback = (
+        'Error: Python: Traceback (most recent call last):\n  File "x"\nOSError: [Errno 28] No space left on device'
+    )
+    assert problem_of(RuntimeError(traceback)) == "Blender could not write it: No space left on device."
+
+
+def test_what_is_hardly_ever_right_counts_as_failed(cli):
+    rows = [{"name": "hand", "confidence": 0.04, "parts": []}, {"name": "foot", "confidence": 0.06, "parts": []}]
+    assert cli["report"].problems_of(rows).startswith("hand: it is matched with a confidence of 4% only, so its parts ")
+    assert cli["report"].problems_of(rows[1:]) == ""
 
 
 def test_what_is_wrong_with_objects_is_told_with_their_names(cli):

@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints
@@ -118,7 +119,20 @@ def assigned(costs: Floats) -> Ints:
     costs : (k, at least k) float64
     """
     row, column = np.indices(costs.shape)
-    return linear_sum_assignment(costs + CHOICE * np.abs(row - column) / costs.shape[1])[1]
+    return cheapest_assignment(costs + CHOICE * np.abs(row - column) / costs.shape[1])[1]
+
+
+def cheapest_assignment(costs: Floats) -> tuple[Ints, Ints]:
+    """Return the rows and columns of the pairs that cost least, as many as the shorter side of (m, n) costs has.
+
+    Not `scipy.optimize.linear_sum_assignment`: a Python with Blender that has loaded scipy.optimize may never end.
+    """
+    if costs.size == 0:
+        return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
+    # An entry of zero would be no entry.
+    raised = costs - costs.min() + np.finfo(np.float64).tiny
+    rows, columns = min_weight_full_bipartite_matching(csr_array(raised))
+    return rows.astype(np.int64), columns.astype(np.int64)
 
 
 def with_signs(functional_map: Floats, signs: Mapping[int, int]) -> Floats:

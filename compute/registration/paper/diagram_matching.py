@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
@@ -22,7 +21,7 @@ from ...segmentation.parts.part_labels import BODY, Segmentation
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import ROUNDING, evened
 from ..eigenfunctions.spectral_shape import SpectralShape
-from ..eigenfunctions.zoomout import assigned
+from ..eigenfunctions.zoomout import assigned, cheapest_assignment
 
 # Functions that are compared, and how far a function may move (Reuter 2009, sections 4.6 and 4.7).
 DIAGRAM_FUNCTIONS = 6
@@ -182,7 +181,7 @@ def match_tips(
     source_places = _embedded(source.eigenbasis, source_tips)[:, : len(matching.order)]
     target_places = _embedded(target.eigenbasis, target_tips)[:, matching.order] * matching.signs
     distance = np.linalg.norm(source_places[:, None] - target_places, axis=2)
-    rows, columns = linear_sum_assignment(distance)
+    rows, columns = cheapest_assignment(distance)
     return PartPairs(source_ids[rows], target_ids[columns], distance[rows, columns])
 
 

@@ -1,6 +1,7 @@
 """Order, sign, mixing and handedness, against shapes whose matching is known."""
 
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from compute.analysis.analyze import analyze
 from compute.errors import Cancelled, RegistrationError
 from compute.registration.eigenfunctions.matching import match, match_shapes
 from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape
-from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
+from compute.registration.eigenfunctions.zoomout import cheapest_assignment, nearest_points, with_constant
 from compute.surface.mesh import TriangleMesh
 from examples import hand, quadruped
 from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, quick, shuffled
@@ -241,3 +242,16 @@ def _depends_on_z_alone(analysis) -> np.ndarray:
     around = np.hypot(basis.nodes[:, 0], basis.nodes[:, 1])
     turning = np.stack([basis.nodes[:, 0], basis.nodes[:, 1]], axis=1) / np.maximum(around, 1e-9)[:, None]
     return np.abs(basis.functions[:, :5].T @ (basis.mass @ turning)).max(axis=1) < 0.1
+
+
+@pytest.mark.parametrize("shape", [(4, 4), (3, 5), (5, 3), (1, 1), (0, 3)])
+def test_no_other_pairs_cost_less_than_the_cheapest(shape):
+    """Against all ways to pair, with entries of zero and some that are as good as forbidden."""
+    random = np.random.default_rng(sum(shape))
+    for _ in range(20):
+        costs = random.choice([0.0, 1e-7, 0.3, 1.0, 1e9], shape) * random.choice([-1.0, 1.0], shape)
+        rows, columns = cheapest_assignment(costs)
+        wide = costs if shape[0] <= shape[1] else costs.T
+        ways = permutations(range(wide.shape[1]), wide.shape[0])
+        assert len(set(rows)) == len(set(columns)) == len(wide)
+        assert costs[rows, columns].sum() == min(wide[range(len(wide)), list(way)].sum() for way in ways)

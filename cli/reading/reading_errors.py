@@ -1,0 +1,77 @@
+"""Sentences for what goes wrong with a file: where it is damaged, what is wrong, what to do."""
+
+import re
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ...compute.errors import EngineError
+from ...operators.messages.user_errors import Refusal
+from ..atomic_write import PREFIX
+from ..process_verdict import MEMORY_WORDS, MORE_MEMORY, NO_MEMORY
+from .binary_files import check_stl, damage_of_blend, damage_of_fbx
+from .damage import damaged
+from .gltf_file import check_glb, check_gltf
+from .ply_file import check_ply
+
+# What the errors of Blender's operators begin with.
+OPERATOR = "Error:"
+# What is looked at before Blender opens a file, and after it refused one.
+BEFORE: dict[str, Callable[[Path], None]] = {
+    ".ply": check_ply,
+    ".stl": check_stl,
+    ".glb": check_glb,
+    ".gltf": check_gltf,
+}
+AFTER: dict[str, Callable[[Path], Refusal]] = {".blend": damage_of_blend, ".fbx": damage_of_fbx}
+
+
+@contextmanager
+def reading_errors_told(path: Path) -> Iterator[None]:
+    """Turn all that goes wrong while Blender reads a file into a Refusal that says where and what."""
+    suffix = path.suffix.lower()
+    if suffix in BEFORE:
+        BEFORE[suffix](path)
+    try:
+        yield
+    except (Refusal, EngineError, MemoryError, OSError):
+        raise
+    except Exception as error:
+        # Readers raise whatever their files lead them to.
+        if any(word in str(error).lower() for word in MEMORY_WORDS):
+            raise MemoryError from error
+        raise (AFTER[suffix](path) if suffix in AFTER else _not_understood(suffix)) from error
+
+
+def problem_of(error: Exception) -> str:
+    """Return one line about what went wrong with a file."""
+    if isinstance(error, Refusal | EngineError):
+        return str(error)
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.strerror}: {_as_named(str(error.filename))}." if error.filename else f"{error.strerror}."
+    if isinstance(error, MemoryError):
+        return NO_MEMORY + MORE_MEMORY
+    if isinstance(error, RuntimeError) and str(error).startswith(OPERATOR):
+        return f"Blender could not write it: {_reason(str(error))}"
+    place = traceback.extract_tb(error.__traceback__)[-1:]
+    where = f" ({Path(place[0].filename).name}, line {place[0].lineno})" if place else ""
+    return f"something went wrong that should not{where}; please report it, with the file if you can."
+
+
+def _reason(said: str) -> str:
+    """Return what an operator of Blender's said, without labels, and without the traceback of one in Python."""
+    if number := re.search(r"\[Errno \d+\] ([^:\n]*)", said):
+        return number[1].strip() + "."
+    if "Traceback" in said:
+        return "this scene is more than its writer understands; take another format, such as .blend."
+    return _as_named(said.splitlines()[0].removeprefix(OPERATOR).strip().rstrip(".")) + "."
+
+
+def _as_named(path: str) -> str:
+    """Return a path as the user knows it, without the folder in which files are written at first."""
+    return re.sub(rf"{re.escape(PREFIX)}[^/\\]*[/\\]", "", path)
+
+
+def _not_understood(suffix: str) -> Refusal:
+    return damaged(f"what is in the {suffix} file does not fit together, and Blender cannot read it")
