@@ -57,7 +57,7 @@ def test_what_is_no_report_is_none(read, value):
 
 
 @pytest.mark.parametrize("value", [None, True, -1.5, "x", 5, [], {}, [5], [[]], {"x": 1}, float("nan"), float("inf")])
-@pytest.mark.parametrize("name", GOOD.keys() - {"written"})
+@pytest.mark.parametrize("name", sorted(GOOD.keys() - {"written"}))
 def test_a_report_with_a_value_of_another_type_is_none(read, name, value):
     stored = read(GOOD | {name: value})
     fits = {type(GOOD[name])} | ({float} if name == "seconds" and value == -1.5 else set())
