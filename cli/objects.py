@@ -9,6 +9,7 @@ import bpy
 from .. import compute
 from ..compute.errors import EngineError
 from ..operators.blender.known_values import mesh_of
+from ..operators.mesh_data.world_shape import size_of
 from ..operators.messages.sentences import Messages
 from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_settings import AnalysisSettings
@@ -48,12 +49,15 @@ def row_of(
     result: AnalysisResult,
     messages: Messages,
 ) -> ObjectRow:
-    """Return the row of a divided object in the report."""
+    """Return the row of a divided object in the report; areas are those in the world."""
+    parts = part_rows(mesh_of(obj), labels)
+    for part in parts:
+        part["area"] *= size_of(obj) ** 2
     return {
         "name": obj.name,
         "level": labels.level,
         "n_levels": result.stored.part_tree.hierarchy.n_levels,
-        "parts": part_rows(mesh_of(obj), labels),
+        "parts": parts,
         "seconds": round(result.seconds, 3),
         "warnings": list(messages.warnings),
     }

@@ -147,6 +147,8 @@ def _draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, state
     status = job_status(context)
     if state.stored is not None and not state.is_readable:
         draw_sentence(layout, DAMAGED, present(context.region).width)
+    elif state.stored is not None and (sentence := state.scale_problem(present(context.object))):
+        draw_sentence(layout, sentence, present(context.region).width)
     if status.problem and status.problem_of == state.mesh.name_full:
         draw_sentence(layout, status.problem, present(context.region).width)
 

@@ -6,8 +6,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ... import compute
 from ..blender.known_values import mesh_of, present
 from ..jobs.mesh_handle import MeshHandle
+from ..mesh_data.world_shape import Stretch
 from ..mesh_state.state import read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal
@@ -19,6 +21,10 @@ from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
 ROOT_LENGTH = 0.6
 # A bone steeper than this is rolled by the front, others by the top.
 STEEP = 0.9
+# The least length of a bone, as a fraction of the skeleton; Blender deletes bones up to a length of 1e-6.
+LEAST_LENGTH, SHORTEST_KEPT = 1e-4, 4e-6
+# How many steps of a number of 32 bits the ends of a bone lie apart at least.
+SEPARATE = 8
 UP, FRONT = (0.0, 0.0, 1.0), (0.0, -1.0, 0.0)
 
 ALREADY_BOUND = (
@@ -56,7 +62,7 @@ class EIGENPARTS_OT_create_armature(ArmatureOptions, SkeletonRequest, bpy.types.
         armature = add_armature(context, obj, laid, names)
         infos, is_bound = (f"{len(names)} bones in {armature.name}.",), True
         if self.weights == "PARTS":
-            bind(obj, armature, names, present(laid.weights))
+            bind(obj, armature, names, laid)
         elif self.weights == "AUTOMATIC":
             bind_automatically(context, obj, armature)
             is_bound = _is_bound(obj, names)
@@ -71,9 +77,7 @@ def add_armature(
     armature = bpy.data.objects.new(f"{obj.name} rig", data)
     for collection in obj.users_collection:
         collection.objects.link(armature)
-    armature.parent, armature.parent_type, armature.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
-    armature.matrix_parent_inverse = obj.matrix_parent_inverse
-    armature.matrix_basis = obj.matrix_basis
+    _place(armature, obj, laid.stretch)
     armature.show_in_front = True
     present(context.view_layer).objects.active = armature
     armature.select_set(True)
@@ -84,16 +88,31 @@ def add_armature(
     return armature
 
 
-def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], weights: NDArray[np.float64]) -> None:
+def _place(armature: bpy.types.Object, obj: bpy.types.Object, stretch: Stretch) -> None:
+    """Put an armature where an object is, turned and sized as the object; what is stretched has no good bones."""
+    armature.parent, armature.parent_type, armature.parent_bone = obj.parent, obj.parent_type, obj.parent_bone
+    armature.matrix_parent_inverse, armature.matrix_basis = obj.matrix_parent_inverse, obj.matrix_basis
+    if stretch.is_none:
+        return
+    unstretched = obj.matrix_basis @ stretch.inverse.as_transform
+    if obj.parent is None:
+        armature.matrix_basis = unstretched
+    else:
+        # Location, rotation and scale cannot undo a shear, which the inverse of the parent can.
+        armature.matrix_parent_inverse = obj.matrix_parent_inverse @ unstretched
+        armature.matrix_basis.identity()
+
+
+def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], laid: NamedSkeleton) -> None:
     """Give an object the weights of its bones as vertex groups, and let the armature move it."""
-    for name, column in zip(names[1:], weights.T[1:], strict=True):
+    for name, column in zip(names[1:], present(laid.weights).T[1:], strict=True):
         group = obj.vertex_groups.new(name=name)
         group.add(np.flatnonzero(column == 1).tolist(), 1.0, "REPLACE")
         # Blender takes one weight for any number of vertices, so the few between two bones go one by one.
         for vertex in np.flatnonzero((column > 0) & (column < 1)).tolist():
             group.add([vertex], column[vertex], "REPLACE")
     obj.parent, obj.parent_type, obj.parent_bone = armature, "OBJECT", ""
-    obj.matrix_parent_inverse = obj.matrix_basis.inverted_safe()
+    obj.matrix_parent_inverse = laid.stretch.as_transform @ obj.matrix_basis.inverted_safe()
     modifier = obj.modifiers.new("Armature", "ARMATURE")
     assert isinstance(modifier, bpy.types.ArmatureModifier)
     modifier.object = armature
@@ -118,19 +137,35 @@ def _is_bound(obj: bpy.types.Object, names: list[str]) -> bool:
 
 def _add_bones(edit_bones: bpy.types.ArmatureEditBones, laid: NamedSkeleton, names: list[str]) -> None:
     skeleton = laid.skeleton
+    heads, tails = bone_ends(skeleton)
     root = edit_bones.new(names[0])
-    root.head = skeleton.joints[0]
-    root.tail = skeleton.joints[0] + ROOT_LENGTH * skeleton.radius[0] * np.array(UP)
+    root.head, root.tail = heads[0], tails[0]
     root.use_deform = False
     for joint in range(1, len(names)):
         bone = edit_bones.new(names[joint])
         start = int(skeleton.parent[joint])
-        bone.head, bone.tail = skeleton.joints[start], skeleton.joints[joint]
+        bone.head, bone.tail = heads[joint], tails[joint]
         bone.parent = edit_bones[names[start]]
         bone.use_connect = start > 0
-        direction = skeleton.joints[joint] - skeleton.joints[start]
+        direction = tails[joint] - heads[joint]
         is_steep = abs(direction[2]) > STEEP * np.linalg.norm(direction)
         bone.align_roll(FRONT if is_steep else UP)
+
+
+def bone_ends(skeleton: "compute.Skeleton") -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return (J, 3) the heads and the tails of the bones, the root's first, none so short that Blender deletes it."""
+    joints, up = skeleton.joints, np.array(UP)
+    heads, tails = joints[np.maximum(skeleton.parent, 0)], joints.copy()
+    tails[0] = joints[0] + ROOT_LENGTH * skeleton.radius[0] * up
+    # Far from the origin, numbers of 32 bits lie farther apart than that.
+    extent, farthest = np.ptp(joints, axis=0).max(), np.abs(joints).max(initial=0)
+    least = max(LEAST_LENGTH * extent, SHORTEST_KEPT, SEPARATE * float(np.spacing(np.float32(farthest))))
+    lengths = np.linalg.norm(tails - heads, axis=1)
+    # A bone without length has no direction either.
+    ways = np.where((lengths > 0)[:, None], tails - heads, up) / np.where(lengths > 0, lengths, 1)[:, None]
+    is_short = lengths < least
+    tails[is_short] = (heads + least * ways)[is_short]
+    return heads, tails
 
 
 def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: NamedSkeleton, names: list[str]) -> None:

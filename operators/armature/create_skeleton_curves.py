@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..blender.known_values import mesh_of, present
+from ..mesh_data.world_shape import Stretch, world_matrix
 from ..messages.sentences import Messages
 from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
 
@@ -25,7 +26,7 @@ class EIGENPARTS_OT_create_skeleton_curves(SkeletonRequest, bpy.types.Operator):
         skeleton = laid.skeleton
         rows = rows_of_bones(skeleton.parent, skeleton.part, skeleton.loops)
         names = part_names(mesh_of(obj), skeleton)
-        curve = add_curve(obj, [(skeleton.joints[row], skeleton.radius[row]) for row in rows])
+        curve = add_curve(obj, [(skeleton.joints[row], skeleton.radius[row]) for row in rows], laid.stretch)
         present(curve.data)[SPLINE_PARTS] = [names[int(skeleton.part[row[1]])] for row in rows]
         present(context.view_layer).objects.active = curve
         curve.select_set(True)
@@ -41,13 +42,20 @@ def rows_of_bones(parent: NDArray[np.int64], part: NDArray[np.int64], loops: NDA
         goes_on = before in rows and n_children[before] == 1 and part[before] == part[joint]
         row = rows.pop(before) if goes_on else [before]
         rows[joint] = [*row, joint]
-    for end, start in loops.tolist():
-        rows[end] = [*rows[end], start]
-    return list(rows.values())
+    closed = [[*rows.pop(end, [end]), start] for end, start in loops.tolist() if end != start]
+    return [*rows.values(), *closed]
 
 
-def add_curve(obj: bpy.types.Object, lines: list[tuple[NDArray[np.float64], NDArray[np.float64]]]) -> bpy.types.Object:
-    """Add a curve object where an object is, with a polyline for each row of (n, 3) points and (n,) radii."""
+def add_curve(
+    obj: bpy.types.Object, lines: list[tuple[NDArray[np.float64], NDArray[np.float64]]], stretch: Stretch
+) -> bpy.types.Object:
+    """Add a curve object where an object is, with a polyline for each row of (n, 3) points and (n,) radii.
+
+    Parameters
+    ----------
+    stretch : Stretch
+        From the mesh of the object to the shape in which the points lie.
+    """
     data = bpy.data.curves.new(f"{obj.name} skeleton", "CURVE")
     data.dimensions, data.bevel_depth = "3D", THICKNESS
     for points, radii in lines:
@@ -58,7 +66,8 @@ def add_curve(obj: bpy.types.Object, lines: list[tuple[NDArray[np.float64], NDAr
     curve = bpy.data.objects.new(data.name, data)
     for collection in obj.users_collection:
         collection.objects.link(curve)
-    curve.matrix_world = obj.matrix_world
+    # Scaled as the object, the curve would be flattened with it.
+    curve.matrix_world = world_matrix(obj) @ stretch.inverse.as_transform
     return curve
 
 

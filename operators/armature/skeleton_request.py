@@ -18,10 +18,12 @@ from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data import mesh_arrays
+from ..mesh_data.world_shape import Stretch, size_of
 from ..mesh_state import bone_layout, part_sides
 from ..mesh_state.references import reference_of, state_of_reference
 from ..mesh_state.state import is_analyzed_for, read, remember
 from ..messages.sentences import Messages
+from ..messages.user_errors import in_name_of
 from ..outputs.part_writer import read_labels
 from ..outputs.rollback import all_or_nothing, bound_or_not, nothing_left_behind
 from ..parts.analysis_request import AnalysisRequest
@@ -47,12 +49,15 @@ class NamedSkeleton:
         For each part that has a side, the part both sides are called after and +1 for left, -1 for right.
     warnings : tuple of str
         Of the analysis and of the skeleton.
+    stretch : Stretch
+        From the mesh to the shape in which the joints lie.
     """
 
     skeleton: compute.Skeleton
     weights: NDArray[np.float64] | None
     pairing: dict[int, tuple[int, int]]
     warnings: tuple[str, ...]
+    stretch: Stretch
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +190,7 @@ def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: compute.Pro
         weights=weights,
         pairing=wanted.pairing or _pairing(skeleton, partner),
         warnings=(*analysis.warnings, *skeleton.warnings),
+        stretch=given.arrays.stretch,
     )
 
 
@@ -212,10 +218,15 @@ def _pairing(skeleton: compute.Skeleton, partner: NDArray[np.int64] | None) -> d
 
 def _other_poses(context: bpy.types.Context) -> tuple[NDArray[np.float64], ...]:
     """Return the vertices of the other selected meshes that have the same faces: the same body in other poses."""
-    others = [obj for obj in context.selected_objects if obj is not context.object and obj.type == "MESH"]
-    mesh = mesh_of(context.object)
-    meshes = [mesh_of(obj) for obj in others if not mesh_of(obj).is_editmode and _share_faces(mesh_of(obj), mesh)]
-    return tuple(mesh_arrays.read_mesh(other).vertices for other in meshes)
+    active = present(context.object)
+    others = [obj for obj in context.selected_objects if obj is not active and obj.type == "MESH"]
+    poses = [obj for obj in others if not mesh_of(obj).is_editmode and _share_faces(mesh_of(obj), mesh_of(active))]
+    return tuple(_pose(context, obj) * (size_of(obj) / size_of(active)) for obj in poses)
+
+
+def _pose(context: bpy.types.Context, obj: bpy.types.Object) -> NDArray[np.float64]:
+    with in_name_of(obj.name):
+        return mesh_arrays.read_object(context, obj, use_modifiers=False).vertices
 
 
 def _share_faces(first: bpy.types.Mesh, second: bpy.types.Mesh) -> bool:

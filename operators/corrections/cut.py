@@ -73,15 +73,15 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     mesh = mesh_of(obj)
     _refuse_shared(obj)
     output_registry.refuse_foreign_results(state)
-    level, mode, shells = state.level, state.mode, state.shells
+    level, mode = state.level, state.mode
     profile, crossings = corrected_analysis.crossings(state, state.border_source)
     arcs = state.analysis.part_tree.arcs_of_faces
     with normals_kept(mesh):
-        faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64))
+        faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64), state.stretch)
     for number, arc in enumerate(arcs):
         arcs[number] = np.concatenate([arc, arc[faces.origin]])
         arcs[number][faces.face] = faces.arcs[:, number]
-    _show(mesh, arcs, level, mode, shells)
+    _show(state, arcs, level, mode)
 
 
 def move_borders(state: MeshState) -> None:
@@ -102,14 +102,15 @@ def move_borders(state: MeshState) -> None:
         ends = np.flatnonzero((cut > 0) & (cut < len(arc_of_part)))
         arc_of_part[cut[ends]] = ends
         arc[moved != labels] = arc_of_part[moved[moved != labels]]
-    _show(state.mesh, arcs, level, mode, state.shells)
+    _show(state, arcs, level, mode)
 
 
-def _show(mesh: bpy.types.Mesh, arcs: list[NDArray[np.int64]], level: int, mode: str, shells: str) -> None:
+def _show(state: MeshState, arcs: list[NDArray[np.int64]], level: int, mode: str) -> None:
     """Store new arcs of the faces, and divide the mesh as before."""
-    graph = AnalyzedFaces(mesh, shells).graph
-    analysis_writer.store_branches(mesh, compute.connected_branches([arc[graph.stands_for] for arc in arcs], graph))
-    part_writer.segment_mesh(mesh, level=level, mode=mode)
+    faces = AnalyzedFaces(state.mesh, state.shells, state.stretch)
+    branches = compute.connected_branches([arc[faces.graph.stands_for] for arc in arcs], faces.graph)
+    analysis_writer.store_branches(state.mesh, branches, faces.place_of_vertex)
+    part_writer.segment_mesh(state.mesh, level=level, mode=mode)
 
 
 def _tell_change(operator: bpy.types.Operator, state: MeshState, before: dict[int, float]) -> None:

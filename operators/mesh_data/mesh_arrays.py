@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ..blender.known_values import elements_of, mesh_of
 from ..messages.user_errors import IN_EDIT_MODE, Refusal
 from .attribute_values import AttributeType, Domain, Values
+from .world_shape import NO_STRETCH, Stretch, stretch_of
 
 Number = TypeVar("Number", np.int32, np.float32)
 
@@ -32,15 +33,19 @@ class MeshArrays:
     Attributes
     ----------
     vertices : (V, 3) float64
+        Of the shape in the world, in the size of the mesh.
     triangles : (T, 3) int64
     polygon_of_triangle : (T,) int64
     edges : (E, 2) int64
+    stretch : Stretch
+        From the mesh to the shape.
     """
 
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int64]
     polygon_of_triangle: NDArray[np.int64]
     edges: NDArray[np.int64]
+    stretch: Stretch = NO_STRETCH
 
 
 @dataclass(frozen=True)
@@ -62,19 +67,25 @@ class OwnAttribute:
         return attribute is not None and self.is_kind_of(attribute)
 
 
-def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
-    """Return the positions and the triangles of a mesh that is not in edit mode."""
-    vertices = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    if len(vertices):
-        elements_of(mesh.attributes["position"]).foreach_get("vector", vertices)
+def read_mesh(mesh: bpy.types.Mesh, stretch: Stretch = NO_STRETCH) -> MeshArrays:
+    """Return the positions and the triangles of a mesh that is not in edit mode, stretched as in the world."""
     triangles = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles)
     return MeshArrays(
-        vertices.reshape(-1, 3).astype(np.float64),
-        triangles.reshape(-1, 3).astype(np.int64),
+        stretch.of(read_positions(mesh).astype(np.float64)),
+        stretch.turned(triangles.reshape(-1, 3).astype(np.int64)),
         polygon_of_triangle(mesh).astype(np.int64),
         read_edges(mesh),
+        stretch,
     )
+
+
+def read_positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the (V, 3) places of the vertices of a mesh that is not in edit mode."""
+    positions = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    if len(positions):
+        elements_of(mesh.attributes["position"]).foreach_get("vector", positions)
+    return positions.reshape(-1, 3)
 
 
 def read_edges(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
@@ -85,16 +96,18 @@ def read_edges(mesh: bpy.types.Mesh) -> NDArray[np.int64]:
 
 
 def read_evaluated_mesh(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> MeshArrays:
-    """Return the mesh as its modifiers leave it; they may move it, but its faces must stay the same."""
+    """Return the shape as modifiers leave it; they may move it, but its faces must stay the same."""
     evaluated = mesh_of(obj.evaluated_get(depsgraph))
     if _faces_digest(evaluated) != _faces_digest(mesh_of(obj)):
         raise Refusal("The modifiers change the faces of the mesh; apply them first or analyze it without modifiers.")
-    return read_mesh(evaluated)
+    return read_mesh(evaluated, stretch_of(obj))
 
 
 def read_object(context: bpy.types.Context, obj: bpy.types.Object, use_modifiers: bool) -> MeshArrays:
-    """Return the mesh of an object, posed by its modifiers if that is wanted."""
-    return read_evaluated_mesh(obj, context.evaluated_depsgraph_get()) if use_modifiers else read_mesh(mesh_of(obj))
+    """Return the shape of an object in the world, posed by its modifiers if that is wanted."""
+    if use_modifiers:
+        return read_evaluated_mesh(obj, context.evaluated_depsgraph_get())
+    return read_mesh(mesh_of(obj), stretch_of(obj))
 
 
 def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float64]:
@@ -108,11 +121,12 @@ def read_vertex_floats(mesh: bpy.types.Mesh, name: str) -> NDArray[np.float64]:
     return values.astype(np.float64)
 
 
-def face_areas(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
-    """Return the (F,) areas of the faces."""
-    areas = np.empty(len(mesh.polygons), dtype=np.float32)
+def face_areas(mesh: bpy.types.Mesh, stretch: Stretch) -> NDArray[np.float64]:
+    """Return the (F,) areas of the faces as they are stretched in the world."""
+    areas, normals = np.empty(len(mesh.polygons), np.float32), np.empty(3 * len(mesh.polygons), np.float32)
     mesh.polygons.foreach_get("area", areas)
-    return areas.astype(np.float64)
+    mesh.polygons.foreach_get("normal", normals)
+    return stretch.areas(areas.astype(np.float64), normals.reshape(-1, 3).astype(np.float64))
 
 
 def polygon_of_triangle(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
@@ -141,10 +155,7 @@ def fingerprint(mesh: bpy.types.Mesh) -> str:
     if mesh.is_editmode:
         raise Refusal(IN_EDIT_MODE)
     digest = blake2b(_faces_digest(mesh), digest_size=16)
-    positions = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    if len(positions):
-        elements_of(mesh.attributes["position"]).foreach_get("vector", positions)
-    digest.update(positions.data)
+    digest.update(read_positions(mesh).data)
     return digest.hexdigest()
 
 

@@ -6,7 +6,7 @@ Blender itself; polygons that no border crosses are not touched.
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from .world_shape import Stretch
 
 # Crossings of one edge that are nearer to each other than this fraction of it are one vertex: no slivers.
 SAME_PLACE = 0.05
@@ -43,7 +44,7 @@ class CutFaces:
     origin: Ints
 
 
-def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: Ints) -> CutFaces:
+def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: Ints, stretch: Stretch) -> CutFaces:
     """Insert borders into a mesh.
 
     Parameters
@@ -51,11 +52,13 @@ def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: 
     crossings : Crossings
         Of the edges of the mesh.
     arc_of_vertex : (V, trees) int64
+    stretch : Stretch
+        From the mesh to the shape that the borders were found on.
     """
     edited = bmesh.new()
     try:
         edited.from_mesh(mesh)
-        cut = _Cut(edited, crossings, arc_of_vertex)
+        cut = _Cut(edited, crossings, arc_of_vertex, stretch)
         cut.split_edges()
         cut.split_faces()
         faces = cut.faces()
@@ -68,7 +71,9 @@ def cut_mesh(mesh: bpy.types.Mesh, crossings: compute.Crossings, arc_of_vertex: 
 class _Cut:
     """A mesh while it is cut."""
 
-    def __init__(self, edited: bmesh.types.BMesh, crossings: compute.Crossings, arc_of_vertex: Ints) -> None:
+    def __init__(
+        self, edited: bmesh.types.BMesh, crossings: compute.Crossings, arc_of_vertex: Ints, stretch: Stretch
+    ) -> None:
         for elements in (edited.verts, edited.edges, edited.faces):
             elements.ensure_lookup_table()
         self._n_faces = len(edited.faces)
@@ -78,6 +83,7 @@ class _Cut:
         self._border = crossings.border.tolist()
         self._arcs_behind = [tuple(arcs) for arcs in crossings.arcs.tolist()]
         self._arcs_of_vertex = arc_of_vertex
+        self._stretch = stretch
         self._edges = {edge: edited.edges[edge] for edge in np.unique(crossings.edge).tolist()}
         starts = np.searchsorted(crossings.edge, list(self._edges)).tolist()
         self._rows = dict(zip(self._edges, map(range, starts, [*starts[1:], len(crossings.edge)]), strict=False))
@@ -159,13 +165,19 @@ class _Cut:
     def _arcs_of_face(self, face: bmesh.types.BMFace) -> Arcs:
         """Return the arcs that most of a face's outline lies on, none if it consists of borders inside the polygon."""
         # Blender gives no number to what was made during the cut.
-        lengths: Counter[Arcs] = Counter()
+        lengths: defaultdict[Arcs, float] = defaultdict(float)
         for edge in face.edges:
             if edge in self._arcs_of_piece:
-                lengths[self._arcs_of_piece[edge]] += edge.calc_length()
+                lengths[self._arcs_of_piece[edge]] += self._length(edge)
             elif edge.index >= 0:
-                lengths[self._arcs_at(edge.verts[0])] += edge.calc_length()
+                lengths[self._arcs_at(edge.verts[0])] += self._length(edge)
         return max(lengths, key=lengths.__getitem__, default=())
+
+    def _length(self, edge: bmesh.types.BMEdge) -> float:
+        if self._stretch.is_none:
+            return edge.calc_length()
+        start, end = edge.verts
+        return float(np.linalg.norm(self._stretch.of(np.array([end.co - start.co]))))
 
 
 def _split_between(pieces: list[bmesh.types.BMFace], ends: set[bmesh.types.BMVert]) -> None:

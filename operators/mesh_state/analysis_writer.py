@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, face_areas, fingerprint, write_attributes
+from ..mesh_data.world_shape import Stretch, stands_as, users_of
 from ..messages.user_errors import Refusal
 from . import corrections, function_hints
 from .part_table import packed_table, renumbered_table
@@ -20,6 +23,7 @@ from .schema import (
     FINGERPRINT,
     LOST,
     OF_PARTS,
+    OTHERWISE_SCALED,
     PIECE,
     REDRAWN,
     SCHEMA,
@@ -34,7 +38,9 @@ from .stored_analysis import (
     has_trees,
     packed_branches,
     packed_source,
+    packed_stretch,
     packed_tree,
+    place_attribute,
     source_attributes,
 )
 
@@ -45,34 +51,50 @@ def store(
     source: BorderSource,
     description: str,
     hints: tuple[compute.FunctionHint, ...] = (),
+    *,
+    place_of_vertex: NDArray[np.int64],
 ) -> tuple[str, ...]:
-    """Put an analysis on the mesh it was made from, in place of an earlier one, and return warnings for the user."""
+    """Put an analysis on the mesh it was made from, in place of an earlier one, and return warnings for the user.
+
+    Parameters
+    ----------
+    place_of_vertex : (V,) int64
+        The vertex that stands for each where several lie at one place along a seam.
+    """
     earlier = read(mesh)
     part_tree = analysis.part_tree
     has_same_parts = has_trees(earlier.stored, part_tree.hierarchy)
-    kept = _kept(earlier, (*CHOICES, *OF_PARTS)) if has_same_parts else _kept_by_place(earlier, part_tree)
-    items, painted, warnings = _kept_corrections(earlier, part_tree, has_same_parts)
+    kept = _kept(earlier, (*CHOICES, *OF_PARTS)) if has_same_parts else _kept_by_place(earlier, analysis)
+    items, painted, warnings = _kept_corrections(earlier, analysis, has_same_parts)
     values = {
         VERSION: SCHEMA,
         DESCRIPTION: description,
         SHELLS: analysis.shells,
+        **packed_stretch(analysis.stretch),
         **kept,
         **corrections.packed_items(items),
         **packed_tree(part_tree),
         **packed_source(source),
         **function_hints.packed_hints(hints),
     }
-    write_attributes(
-        mesh, {**branch_attributes(part_tree.branches), **source_attributes(source), **painted, PIECE: None}
-    )
+    attributes = {
+        **branch_attributes(part_tree.branches),
+        **source_attributes(source),
+        **place_attribute(place_of_vertex),
+        **painted,
+        PIECE: None,
+    }
+    write_attributes(mesh, attributes)
     replace(mesh, {**values, FINGERPRINT: fingerprint(mesh)})
-    return warnings
+    return (*warnings, *_otherwise_scaled(mesh, analysis.stretch))
 
 
-def store_branches(mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...]) -> None:
+def store_branches(
+    mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...], place_of_vertex: NDArray[np.int64]
+) -> None:
     """Put new faces of the arcs on a mesh whose faces were cut; its borders can be cut no more."""
     gone = dict.fromkeys((*ARCS, EDGE_HEIGHTS, PIECE))
-    write_attributes(mesh, {**branch_attributes(branches), **gone})
+    write_attributes(mesh, {**branch_attributes(branches), **place_attribute(place_of_vertex), **gone})
     remember(mesh, {**packed_branches(branches), FINGERPRINT: fingerprint(mesh), REDRAWN: None})
 
 
@@ -86,7 +108,14 @@ def _kept(earlier: MeshState, names: tuple[str, ...]) -> dict[str, Any]:
     }
 
 
-def _kept_by_place(earlier: MeshState, part_tree: compute.PartTree) -> dict[str, Any]:
+def _otherwise_scaled(mesh: bpy.types.Mesh, stretch: Stretch) -> tuple[str, ...]:
+    """Return the warning about other objects with the mesh that have another shape in the world."""
+    users = users_of(mesh)
+    others = [obj for obj in users if not stands_as(obj, stretch)]
+    return (OTHERWISE_SCALED.format(others[0].name),) if 0 < len(others) < len(users) else ()
+
+
+def _kept_by_place(earlier: MeshState, analysis: StoredAnalysis) -> dict[str, Any]:
     """Return the same where parts have other numbers: names and colours go where most of their faces went."""
     kept, table = _kept(earlier, CHOICES), earlier.parts
     if not (table.names or table.colours):
@@ -96,12 +125,13 @@ def _kept_by_place(earlier: MeshState, part_tree: compute.PartTree) -> dict[str,
     except Refusal:
         return kept
     numbers = {*table.places, *table.names, *table.colours}
-    tracked = compute.tracked_parts(numbers, before, part_tree, face_areas(earlier.mesh), earlier.mode)
+    areas = face_areas(earlier.mesh, analysis.stretch)
+    tracked = compute.tracked_parts(numbers, before, analysis.part_tree, areas, earlier.mode)
     return {**kept, **packed_table(renumbered_table(table, tracked))}
 
 
 def _kept_corrections(
-    earlier: MeshState, part_tree: compute.PartTree, has_same_parts: bool
+    earlier: MeshState, analysis: StoredAnalysis, has_same_parts: bool
 ) -> tuple[tuple[compute.Correction, ...], dict[OwnAttribute, Values | None], tuple[str, ...]]:
     """Return the earlier corrections with the numbers that their parts have now, faces painted anew, and warnings."""
     items = earlier.corrections
@@ -111,7 +141,8 @@ def _kept_corrections(
         before = earlier.analysis_of_any_shape.part_tree
     except Refusal:
         return (), {}, (LOST,)
-    partners = compute.carried(items, before, part_tree, face_areas(earlier.mesh))
+    part_tree = analysis.part_tree
+    partners = compute.carried(items, before, part_tree, face_areas(earlier.mesh, analysis.stretch))
     painted = compute.carried_painting(earlier.painted, items, partners)
     kept = compute.renumbered(items, partners, before.hierarchy, part_tree.hierarchy)
     return kept, corrections.painted_attribute(painted), (LOST,) if len(kept) < len(items) else ()

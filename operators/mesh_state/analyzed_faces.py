@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import MeshArrays, read_mesh
+from ..mesh_data.world_shape import Stretch
 from .stored_analysis import vertex_heights
 
 
@@ -20,10 +23,13 @@ class AnalyzedFaces:
     ----------
     mesh : Mesh
     shells : str
+    stretch : Stretch
+        From the mesh to the shape that was analyzed.
     """
 
     mesh: bpy.types.Mesh
     shells: str
+    stretch: Stretch
 
     @cached_property
     def graph(self) -> compute.FaceGraph:
@@ -36,9 +42,14 @@ class AnalyzedFaces:
         polygons, heights = self._arrays.polygon_of_triangle, vertex_heights(self.mesh)
         return compute.relief_of(self._surface, heights, polygons, self.graph.stands_for)
 
+    @property
+    def place_of_vertex(self) -> NDArray[np.int64]:
+        """The (V,) vertex that stands for each where several lie at one place along a seam."""
+        return self._surface.vertex_of_input
+
     @cached_property
     def _arrays(self) -> MeshArrays:
-        return read_mesh(self.mesh)
+        return read_mesh(self.mesh, self.stretch)
 
     @cached_property
     def _triangles(self) -> compute.TriangleMesh:

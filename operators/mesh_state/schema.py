@@ -11,6 +11,8 @@ SCHEMA = 2
 VERSION, FINGERPRINT, DESCRIPTION, SHELLS = "schema", "fingerprint", "description", "shells"
 HIERARCHY, TREE, PIECES_OF_TREE, CLOSING_HEIGHTS = "hierarchy", "tree_{}", "branches_{}", "closing_heights_{}"
 INSIDE_EDGES = "n_inside_edge"
+# The nine numbers that the mesh was stretched with to its shape in the world; not there if it was not.
+STRETCH = "stretch"
 # Of the division that is shown, and of the outputs it is written to: one name a line.
 LEVEL, MODE, PARTS, OUTPUTS, SOFTNESS = "level", "mode", "parts", "outputs", "softness"
 # Of the parts, each a group keyed by their numbers.
@@ -44,11 +46,13 @@ ARCS = (
 )
 HEIGHT = OwnAttribute(".eigenparts_height", "FLOAT", "POINT")
 EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vector")
+# The vertex that stands for each where several lie at one place along a seam; not there if none do.
+PLACES = OwnAttribute(".eigenparts_place", "INT", "POINT")
 # The part each face was painted with and one more, so that 0 is none.
 PAINTED = OwnAttribute("eigenparts_painted", "INT", "FACE")
 # The branches divided as corrections need them; the attribute is there only while some do.
 PIECE = OwnAttribute(".eigenparts_piece", "INT", "FACE")
-ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, PAINTED, PIECE)
+ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, PLACES, PAINTED, PIECE)
 
 # More than any mesh has, so that a damaged number makes no table that fills the memory.
 MOST_LABELS = 1 << 22
@@ -57,6 +61,14 @@ LONGEST_DESCRIPTION = 200
 NEWER = "This mesh was analyzed by a newer version of Eigenparts; update the extension or analyze the mesh again."
 CUT = "The borders of this mesh were cut already; analyze it again to cut it at another level."
 CHANGED = "The mesh was changed after it was analyzed; analyze it again."
+SCALED = (
+    "The object was scaled after it was analyzed, or its parent was, so its shape is another one; analyze it again, or"
+    " take the scale back."
+)
+OTHERWISE_SCALED = (
+    "The mesh is used by {}, too, which is scaled otherwise and shows the same parts; make it single-user to analyze"
+    " each by itself."
+)
 DAMAGED = "The analysis stored on this mesh is damaged; analyze it again."
 ABSENT = "Analyze the mesh first."
 LOST = "The parts that some corrections by hand belong to are not found any more; these corrections were removed."

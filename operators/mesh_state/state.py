@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ... import compute
 from ..blender.known_values import mesh_of
 from ..mesh_data.mesh_arrays import fingerprint
+from ..mesh_data.world_shape import Stretch, stands_as, users_of
 from ..messages.user_errors import Refusal
 from . import (
     bone_layout,
@@ -87,7 +88,7 @@ class MeshState:
 
     def refuse_unreadable(self) -> None:
         """Raise a Refusal if level and parts cannot be read."""
-        _ = self.summary
+        _ = self.summary, self.stretch
 
     @property
     def level(self) -> int:
@@ -138,7 +139,7 @@ class MeshState:
 
     @cached_property
     def softness(self) -> float:
-        """The width over which vertex groups are softened, in the mesh's unit."""
+        """The width over which vertex groups are softened, in the unit of the world."""
         width = self.get(schema.SOFTNESS)
         return max(0.0, float(width)) if isinstance(width, int | float) else 0.0
 
@@ -153,12 +154,32 @@ class MeshState:
         """
         if self.readable.get(schema.FINGERPRINT) != fingerprint(self.mesh):
             raise Refusal(schema.CHANGED)
+        if not self.stands_as_analyzed:
+            raise Refusal(schema.SCALED)
         return self.analysis_of_any_shape
 
     @cached_property
     def analysis_of_any_shape(self) -> StoredAnalysis:
         """The analysis, also where the mesh was moved since."""
-        return stored_analysis.unpacked_analysis(self.mesh, self.readable, self.shells)
+        return stored_analysis.unpacked_analysis(self.mesh, self.readable, self.shells, self.stretch)
+
+    @cached_property
+    def stretch(self) -> Stretch:
+        """The stretch that the mesh was analyzed with; raises a Refusal if it is damaged."""
+        return stored_analysis.unpacked_stretch(self.get(schema.STRETCH))
+
+    @property
+    def stands_as_analyzed(self) -> bool:
+        """Whether an object that uses the mesh has the scale that it was analyzed with."""
+        users = users_of(self.mesh)
+        return not users or any(stands_as(obj, self.stretch) for obj in users)
+
+    def scale_problem(self, obj: bpy.types.Object) -> str:
+        """Return what is wrong with the scale of an object that uses the mesh; empty if it is as it was analyzed."""
+        if stands_as(obj, self.stretch):
+            return ""
+        others = [other for other in users_of(self.mesh) if stands_as(other, self.stretch)]
+        return schema.OTHERWISE_SCALED.format(others[0].name) if others else schema.SCALED
 
     @cached_property
     def border_source(self) -> BorderSource:
@@ -168,7 +189,7 @@ class MeshState:
     @cached_property
     def faces(self) -> AnalyzedFaces:
         """The faces as they were analyzed; the longest to make."""
-        return AnalyzedFaces(self.mesh, self.shells)
+        return AnalyzedFaces(self.mesh, self.shells, self.stretch)
 
     @cached_property
     def corrections(self) -> tuple[compute.Correction, ...]:

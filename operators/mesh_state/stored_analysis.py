@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ... import compute
 from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, read_edges, read_own_floats, read_own_integers
+from ..mesh_data.world_shape import NO_STRETCH, Stretch
 from ..messages.user_errors import Refusal
 from .schema import (
     ARCS,
@@ -25,6 +26,8 @@ from .schema import (
     HIERARCHY,
     INSIDE_EDGES,
     PIECES_OF_TREE,
+    PLACES,
+    STRETCH,
     TREE,
 )
 from .serialization import UNREADABLE, packed, packed_array, unpacked, unpacked_array
@@ -41,12 +44,15 @@ class StoredAnalysis:
         Without the pairs that are noise.
     shells : str
         What was done with loose parts, one of ``compute.SHELLS``.
+    stretch : Stretch
+        From the mesh to the shape that was analyzed.
     corrections : Corrections, optional
         What was changed by hand; it refers to the branches of this tree.
     """
 
     part_tree: compute.PartTree
     shells: str
+    stretch: Stretch = NO_STRETCH
     corrections: compute.Corrections | None = None
 
 
@@ -78,6 +84,23 @@ def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
     }
 
 
+def packed_stretch(stretch: Stretch) -> dict[str, Any]:
+    """Return a stretch as a value of the state, nothing if it is none."""
+    return {} if stretch.is_none else {STRETCH: stretch.matrix.ravel().tolist()}
+
+
+def unpacked_stretch(values: Any) -> Stretch:
+    """Return the stretch that a mesh was analyzed with; raises a Refusal if it is damaged."""
+    if values is None:
+        return NO_STRETCH
+    if getattr(values, "typecode", "") not in tuple("df") or len(values) != 9:
+        raise Refusal(DAMAGED)
+    matrix = np.array(values, dtype=np.float64).reshape(3, 3)
+    if not (np.isfinite(matrix).all() and np.isclose(abs(np.linalg.det(matrix)), 1)):
+        raise Refusal(DAMAGED)
+    return Stretch(matrix)
+
+
 def packed_branches(branches: tuple[compute.Branches, ...]) -> dict[str, Any]:
     """Return the tables of branches as groups."""
     return {PIECES_OF_TREE.format(i): packed(pieces) for i, pieces in enumerate(branches)}
@@ -104,7 +127,23 @@ def source_attributes(source: BorderSource) -> dict[OwnAttribute, Values | None]
     }
 
 
-def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAnalysis:
+def place_attribute(place_of_vertex: NDArray[np.int64]) -> dict[OwnAttribute, Values | None]:
+    """Return the attribute of the vertices (V,) that stand for others at their place; None if there are no such."""
+    is_alone = np.array_equal(place_of_vertex, np.arange(len(place_of_vertex)))
+    return {PLACES: None if is_alone else place_of_vertex.astype(np.int32)}
+
+
+def places_of_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32] | None:
+    """Return the (V,) vertex that stands for each along seams; None if each stands for itself."""
+    if not PLACES.is_on(mesh):
+        return None
+    places = read_own_integers(mesh, PLACES)
+    if not lie_within(places, 0, len(places)):
+        raise Refusal(DAMAGED)
+    return places
+
+
+def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str, stretch: Stretch) -> StoredAnalysis:
     """Return the analysis in a state; raises a Refusal if it is damaged."""
     try:
         part_tree = _unpacked_tree(mesh, group)
@@ -112,7 +151,7 @@ def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str) -> StoredAn
         raise Refusal(DAMAGED) from error
     if not is_sound(part_tree):
         raise Refusal(DAMAGED)
-    return StoredAnalysis(part_tree, shells)
+    return StoredAnalysis(part_tree, shells, stretch)
 
 
 def unpacked_branches(group: Any, of_faces: list[NDArray[np.int32]]) -> tuple[compute.Branches, ...]:

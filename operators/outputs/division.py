@@ -25,7 +25,7 @@ class Division:
     colours : (n, 4) float32
         Linear RGBA of each number up to the highest.
     softness : float
-        Width in the mesh's unit over which vertex groups pass from one part to the next; 0 for hard borders.
+        Width in the unit of the world over which vertex groups pass from one part to the next; 0 for hard borders.
     """
 
     labels: NDArray[np.int32]

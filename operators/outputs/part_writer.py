@@ -148,7 +148,7 @@ def write_outputs(mesh: bpy.types.Mesh, names: set[str] | None = None, softness:
     names : set of str, optional
         Keys of ``OUTPUTS``; those that were chosen before if None.
     softness : float, optional
-        Width over which vertex groups are softened, in the mesh's unit; as before if None.
+        Width over which vertex groups are softened, in the unit of the world; as before if None.
     """
     _rewrite(read(mesh), names=names, softness=softness)
 

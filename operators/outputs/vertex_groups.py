@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import read_mesh
+from ..mesh_data.world_shape import size_of
+from ..mesh_state.state import read
 from .division import Division
 from .output import Output
 from .vertex_map import labels_of_vertices
@@ -25,7 +27,7 @@ def write(mesh: bpy.types.Mesh, division: Division) -> None:
     groups = _groups(mesh, obj, division.names)
     labels = labels_of_vertices(mesh, division.labels)
     if division.softness > 0:
-        _fill_softly(groups, *_softened(mesh, labels, division.softness))
+        _fill_softly(groups, *_softened(mesh, labels, division.softness / (size_of(obj) or 1.0)))
     else:
         _fill_hard(groups, labels)
 
@@ -105,7 +107,7 @@ def _softened(
     mesh: bpy.types.Mesh, labels: NDArray[np.int32], width: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the parts (P,) and the (V, P) weights; vertices at one place get the same."""
-    arrays = read_mesh(mesh)
+    arrays = read_mesh(mesh, read(mesh).stretch)
     _, first, place = np.unique(arrays.vertices, axis=0, return_index=True, return_inverse=True)
     place = place.reshape(-1)
     welded = compute.TriangleMesh(arrays.vertices[first], place[arrays.triangles])

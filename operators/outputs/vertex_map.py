@@ -11,6 +11,7 @@ from ..mesh_data.mesh_arrays import (
     vertex_of_corner,
     write_attribute,
 )
+from ..mesh_state.stored_analysis import places_of_vertices
 from .division import Division
 from .output import Output
 
@@ -28,9 +29,11 @@ def remove(mesh: bpy.types.Mesh) -> None:
 
 
 def labels_of_vertices(mesh: bpy.types.Mesh, labels: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return the (V,) int32 labels of the vertices for those of the faces."""
-    label_of_corner = np.repeat(labels, n_corners_of_polygon(mesh))
-    return majority_label(label_of_corner, vertex_of_corner(mesh), len(mesh.vertices))
+    """Return the (V,) int32 labels of the vertices for those of the faces; equal ones at one place along a seam."""
+    label_of_corner, places = np.repeat(labels, n_corners_of_polygon(mesh)), places_of_vertices(mesh)
+    if places is None:
+        return majority_label(label_of_corner, vertex_of_corner(mesh), len(mesh.vertices))
+    return majority_label(label_of_corner, places[vertex_of_corner(mesh)], len(mesh.vertices))[places]
 
 
 def majority_label(

@@ -41,6 +41,8 @@ class AnalysisResult:
     seconds : float
         Time of the analysis.
     polygon_of_triangle : (T,) int64
+    place_of_vertex : (V,) int64
+        The vertex that stands for each where several lie at one place along a seam.
     hints : tuple of FunctionHint
     """
 
@@ -50,6 +52,7 @@ class AnalysisResult:
     warnings: tuple[str, ...]
     seconds: float
     polygon_of_triangle: NDArray[np.int64]
+    place_of_vertex: NDArray[np.int64]
     hints: tuple[compute.FunctionHint, ...] = ()
 
 
@@ -101,14 +104,21 @@ def write(
         One of ``level``, ``threshold`` and ``n_parts``; the default level if there is none.
     """
     with all_or_nothing(mesh):
-        lost = analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
+        told = store(mesh, result)
         labels = part_writer.segment_mesh(mesh, mode=mode, **(choice or {}))
     n_parts, seconds = len(labels.parts), result.seconds
     is_divided = f"{n_parts} parts ({seconds:.1f} s)."
     is_whole = f"No features: the mesh is one part ({seconds:.1f} s)."
     hint = function_hints.sentence(function_hints.rows_of(result.hints))
     infos = (is_divided if n_parts > 1 else is_whole, hint)
-    return Segmented(labels, Messages(infos, (*result.warnings, *lost, *labels.warnings)))
+    return Segmented(labels, Messages(infos, (*result.warnings, *told, *labels.warnings)))
+
+
+def store(mesh: bpy.types.Mesh, result: AnalysisResult) -> tuple[str, ...]:
+    """Put an analysis on its mesh without dividing it, and return warnings for the user."""
+    return analysis_writer.store(
+        *(mesh, result.stored, result.source, result.description, result.hints), place_of_vertex=result.place_of_vertex
+    )
 
 
 def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) -> AnalysisResult:
@@ -117,12 +127,13 @@ def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) 
     heights = compute.vertex_heights(analysis.surface, analysis.field)
     is_function = isinstance(given.options["field"], int)
     return AnalysisResult(
-        stored=StoredAnalysis(part_tree, given.options["shells"]),
+        stored=StoredAnalysis(part_tree, given.options["shells"], given.arrays.stretch),
         source=BorderSource(analysis.profile(given.arrays.edges), heights),
         description=_description(given.options["field"]),
         warnings=analysis.warnings,
         seconds=seconds,
         polygon_of_triangle=given.arrays.polygon_of_triangle,
+        place_of_vertex=analysis.surface.vertex_of_input,
         hints=compute.judge_eigenfunctions(analysis.eigenbasis) if is_function else (),
     )
 

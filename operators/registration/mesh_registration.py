@@ -12,7 +12,9 @@ from dataclasses import asdict, dataclass
 import bpy
 
 from ..blender.known_values import mesh_of, present
-from ..mesh_state import analysis_writer, registration_record
+from ..mesh_data.unfinished_meshes import modifiers_that_add, unfinished
+from ..mesh_data.world_shape import users_of
+from ..mesh_state import registration_record
 from ..mesh_state.corrected_analysis import corrected
 from ..mesh_state.part_table import PartTable
 from ..mesh_state.references import registered_objects
@@ -164,8 +166,7 @@ def write_target(
     """
     output_registry.refuse_foreign_results(read(mesh))
     with all_or_nothing(mesh):
-        result = shape.result
-        lost = analysis_writer.store(mesh, result.stored, result.source, result.description, result.hints)
+        told = mesh_segmentation.store(mesh, shape.result)
         part_writer.show_registered(
             mesh,
             shape.labels,
@@ -175,8 +176,9 @@ def write_target(
             reference,
             mode=shared.mode,
         )
-    warnings = _in_name_of(shape.name, (*shape.result.warnings, *lost, *shape.labels.warnings))
-    return Messages(warnings=(*shared.warnings, *warnings, *_doubts(shape)))
+    warnings = _in_name_of(shape.name, (*shape.result.warnings, *told, *shape.labels.warnings))
+    objects = [obj for obj in (*users_of(mesh)[:1], reference) if obj is not None]
+    return Messages(warnings=(*shared.warnings, *warnings, *_doubts(shape, objects)))
 
 
 def match_of(shape: RegisteredShape, shared: SharedParts) -> registration_record.Match:
@@ -218,8 +220,10 @@ def _summary(reference: str, shapes: tuple[RegisteredShape, ...]) -> str:
     return f"Registered {len(shapes)} objects to {reference}; least sure: {name}, {lowest:.0%}."
 
 
-def _doubts(shape: RegisteredShape) -> tuple[str, ...]:
+def _doubts(shape: RegisteredShape, objects: list[bpy.types.Object]) -> tuple[str, ...]:
+    """Return what is told where a matching is not sure, with what of the objects may be the cause."""
     confidence = shape.matching.confidence
     if confidence > registration_record.SURE:
         return ()
-    return (f"{shape.name} is matched with a confidence of {confidence:.0%} only; look at its parts.",)
+    is_unsure = f"{shape.name} is matched with a confidence of {confidence:.0%} only; look at its parts."
+    return (is_unsure, *filter(None, (unfinished(obj.name, modifiers_that_add(obj)) for obj in objects)))

@@ -26,8 +26,8 @@ class EIGENPARTS_OT_register_selected(RegistrationOperator, AnalysisRequest, Typ
 
     mirrored: bool = BoolProperty(
         name="Mirrored",
-        description="The meshes are mirror images, such as a left hand and a right one; not needed where only the"
-        " scale of an object mirrors it",
+        description="The meshes are mirror images, such as a left hand and a right one, or as a negative scale makes"
+        " them",
     )
 
     @classmethod

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ... import compute
 from ..blender.known_values import values_of
-from ..parts.fresh_analysis import FreshAnalysis
+from ..parts.fresh_analysis import AnalyzedShape, FreshAnalysis
 from .diagram_picture import Plotted, draw_diagram
 from .lettering import Lettering
 
@@ -24,7 +24,8 @@ class EIGENPARTS_OT_plot_diagram(FreshAnalysis, bpy.types.Operator):
     bl_label = "Plot Diagram"
     bl_options = {"UNDO"}
 
-    def show(self, context: bpy.types.Context, obj: bpy.types.Object, analysis: "compute.Analysis") -> str:
+    def show(self, context: bpy.types.Context, obj: bpy.types.Object, shape: AnalyzedShape) -> str:
+        analysis = shape.analysis
         title = f"Persistence diagram of {obj.name}, {analysis.field.name}"
         plotted = Plotted(title, analysis.diagram, compute.NOISE_THRESHOLD, compute.DEFAULT_THRESHOLD)
         with Lettering() as letters:

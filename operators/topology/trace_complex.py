@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from ... import compute
 from ..blender.known_values import mesh_of, present
 from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
+from ..mesh_data.world_shape import Stretch
 from ..mesh_state.palette import COMPLEX_COLOURS
 from ..mesh_state.palette import COMPLEX_ROLE as ROLE
 from ..mesh_state.state import is_analyzed, read
 from ..outputs.rollback import nothing_left_behind
-from ..parts.fresh_analysis import FreshAnalysis
+from ..parts.fresh_analysis import AnalyzedShape, FreshAnalysis
 
 # The object whose complex a collection holds.
 OF_OBJECT = "eigenparts_complex"
@@ -25,7 +26,7 @@ DOT_SEGMENTS, DOT_RINGS = 16, 8
 
 @dataclass(frozen=True, eq=False)
 class TracedComplex:
-    """Polylines and dots by role, in the coordinates of the mesh.
+    """Polylines and dots by role, in the coordinates of the shape.
 
     Attributes
     ----------
@@ -51,7 +52,8 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, TypedProperties, bpy.types.Oper
         name="Thickness", description="How thick lines and dots are, as a multiple of the usual", default=1.0, min=0.01
     )
 
-    def show(self, context: bpy.types.Context, owner: bpy.types.Object, analysis: "compute.Analysis") -> str:
+    def show(self, context: bpy.types.Context, owner: bpy.types.Object, shape: AnalyzedShape) -> str:
+        analysis = shape.analysis
         traced = traced_complex(analysis, self.level if self.level >= 0 else shown_level(mesh_of(owner), analysis))
         size = self.thickness * float(np.ptp(analysis.mesh.vertices, axis=0).max())
         with nothing_left_behind(context):
@@ -60,7 +62,7 @@ class EIGENPARTS_OT_trace_complex(FreshAnalysis, TypedProperties, bpy.types.Oper
             # What is there from before goes only when there is something to take its place.
             collection = empty_collection(context, owner.name)
             for role, data in {**lines, **dots}.items():
-                obj = add_object(collection, owner, role, data)
+                obj = add_object(collection, owner, role, data, shape.stretch)
                 if role in dots:
                     obj["places"] = traced.dots[role].ravel().tolist()
         n_dots = sum(len(places) for places in traced.dots.values())
@@ -107,12 +109,14 @@ def name_of_scene_collection(context: bpy.types.Context, collection: bpy.types.C
 
 
 def add_object(
-    collection: bpy.types.Collection, owner: bpy.types.Object, role: str, data: bpy.types.ID
+    collection: bpy.types.Collection, owner: bpy.types.Object, role: str, data: bpy.types.ID, stretch: Stretch
 ) -> bpy.types.Object:
-    """Put data in the place of the mesh, following it."""
+    """Put data that lies in the shape of the mesh in its place, following it."""
     obj = bpy.data.objects.new(data.name, data)
     obj[ROLE] = role
     obj.parent = owner
+    # Scaled as the owner, dots would be flattened with it.
+    obj.matrix_parent_inverse = stretch.inverse.as_transform
     obj.color.foreach_set((*COMPLEX_COLOURS[role], 1.0))
     collection.objects.link(obj)
     return obj

@@ -54,7 +54,8 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bp
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., VertexFunctions], MeshHandle]:
         mesh = mesh_of(context.object)
         mesh_arrays.refuse_foreign(mesh, _attributes(self.n_functions))
-        solve = partial(_functions_on_vertices, mesh_arrays.read_mesh(mesh), self.n_functions)
+        shape = mesh_arrays.read_object(context, present(context.object), use_modifiers=False)
+        solve = partial(_functions_on_vertices, shape, self.n_functions)
         return solve, MeshHandle.of(present(context.object))
 
     def finish(self, context: bpy.types.Context, handle: MeshHandle, result: VertexFunctions) -> Outcome:

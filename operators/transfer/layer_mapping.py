@@ -13,6 +13,7 @@ from ... import compute
 from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data.mesh_arrays import MeshArrays
+from ..mesh_data.unfinished_meshes import unfinished
 from ..messages.user_errors import Refusal, in_name_of
 from ..registration.match_options import MatchOptions
 from . import layers
@@ -47,6 +48,8 @@ class TransferShape:
         Vertex and face of each corner.
     options : MatchOptions
         How a target is matched with the source.
+    modifiers : tuple of str
+        Names of those that add to the mesh, so that its shape is not the one that is seen.
     """
 
     name: str
@@ -55,6 +58,7 @@ class TransferShape:
     corner_vertex: NDArray[np.int64]
     corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
+    modifiers: tuple[str, ...] = ()
 
     @property
     def mesh(self) -> compute.TriangleMesh:
@@ -64,9 +68,18 @@ class TransferShape:
 
 @dataclass(frozen=True, eq=False)
 class ShapeMap:
-    """The map from a target to the source, with what their analyses warn of."""
+    """The map from a target to the source, with what their analyses warn of.
+
+    Attributes
+    ----------
+    correspondence : Correspondence
+    place_of_vertex : (V,) int64
+        The vertex of the target that stands for each where several lie at one place along a seam.
+    source_warnings, target_warnings : tuple of str
+    """
 
     correspondence: compute.Correspondence
+    place_of_vertex: NDArray[np.int64]
     source_warnings: tuple[str, ...]
     target_warnings: tuple[str, ...]
 
@@ -87,6 +100,8 @@ class MappedLayers:
         Layers whose seams could not be kept.
     warnings : tuple of str
         Of the two analyses, beginning with the names of the objects.
+    unfinished : tuple of str
+        What is told of modifiers where the matching is not sure.
     """
 
     layers: list[Layer]
@@ -95,6 +110,7 @@ class MappedLayers:
     confidence: float
     torn_seams: tuple[str, ...]
     warnings: tuple[str, ...] = ()
+    unfinished: tuple[str, ...] = ()
 
 
 def map_to_all(
@@ -135,7 +151,8 @@ def _new_maps(
     steps = _steps(compute.section(progress, 0.3, 0.95), len(targets))
     for (key, target), analysis, step in zip(targets.items(), analyses, steps, strict=True):
         correspondence = _correspond(source, target, source_analysis, analysis, compute.naming(step, target.name))
-        maps[key] = ShapeMap(correspondence, source_analysis.warnings, analysis.warnings)
+        places = analysis.surface.vertex_of_input
+        maps[key] = ShapeMap(correspondence, places, source_analysis.warnings, analysis.warnings)
         _recent_maps.put(key, maps[key], len(target.arrays.vertices))
     return maps
 
@@ -160,7 +177,9 @@ def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
     )
     if not alike:
         return target
-    triangles = target.corner_vertex[source.corners]
+    # What is mirrored in the world has its corners turned round already.
+    turned = source.arrays.stretch.mirrors != target.arrays.stretch.mirrors
+    triangles = target.corner_vertex[source.corners[:, [0, 2, 1]] if turned else source.corners]
     polygons = source.arrays.polygon_of_triangle
     return replace(target, arrays=replace(target.arrays, triangles=triangles, polygon_of_triangle=polygons))
 
@@ -191,7 +210,8 @@ def _correspond(
     choices = (matching, *matching.alternatives)
     matching = choices[options.alternative % len(choices)]
     if matching.confidence < NO_MATCH:
-        raise Refusal(NOT_ALIKE.format(source.name, target.name, matching.confidence))
+        not_alike = NOT_ALIKE.format(source.name, target.name, matching.confidence)
+        raise Refusal(" ".join([not_alike, *_unfinished(source, target)]))
     return compute.correspond(
         source_analysis, target_analysis, matching=matching, progress=compute.section(progress, 0.5, 1)
     )
@@ -201,10 +221,10 @@ def _mapped(
     shape_map: ShapeMap, source: TransferShape, target: TransferShape, given: list[Layer], fills: bool
 ) -> MappedLayers:
     correspondence = shape_map.correspondence
-    mapper = _LayerMapper(correspondence, source, target)
+    mapper = _LayerMapper(shape_map, source, target)
     mapped = [mapper.map(layer) for layer in given]
     if fills and not correspondence.is_sure.all():
-        mapped = [_filled(correspondence, mapper.target_mesh, layer) for layer in mapped]
+        mapped = [mapper.filled(layer) for layer in mapped]
     return MappedLayers(
         layers=mapped,
         is_sure=correspondence.is_sure,
@@ -215,22 +235,32 @@ def _mapped(
             *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
             *(f"{target.name}: {warning}" for warning in shape_map.target_warnings),
         ),
+        unfinished=_unfinished(source, target),
     )
 
 
-def _filled(correspondence: compute.Correspondence, mesh: compute.TriangleMesh, layer: Layer) -> Layer:
-    if not layer.can_blend or layer.kind == layers.CORNER:
-        return layer
-    return layer.with_values(compute.fill_unsure(correspondence, mesh, layer.values.astype(np.float64)))
+def _unfinished(*shapes: TransferShape) -> tuple[str, ...]:
+    """Return a sentence about each shape whose modifiers add to it."""
+    return tuple(sentence for shape in shapes if (sentence := unfinished(shape.name, shape.modifiers)))
 
 
 class _LayerMapper:
     """Maps layers from one mesh to another."""
 
-    def __init__(self, correspondence: compute.Correspondence, source: TransferShape, target: TransferShape) -> None:
-        self._correspondence, self._source, self._target = correspondence, source, target
-        self._source_mesh, self.target_mesh = source.mesh, target.mesh
+    def __init__(self, shape_map: ShapeMap, source: TransferShape, target: TransferShape) -> None:
+        self._correspondence, self._source, self._target = shape_map.correspondence, source, target
+        self._source_mesh, self._target_mesh = source.mesh, target.mesh
+        # What spreads over the surface must not end at a seam.
+        self._places = shape_map.place_of_vertex
+        self._welded = compute.TriangleMesh(target.arrays.vertices, self._places[target.arrays.triangles])
         self.torn_seams: list[str] = []
+
+    def filled(self, layer: Layer) -> Layer:
+        """Return a mapped layer with what fits smoothly in place of what is unsure."""
+        if not layer.can_blend or layer.kind == layers.CORNER:
+            return layer
+        values = compute.fill_unsure(self._correspondence, self._welded, layer.values.astype(np.float64))
+        return layer.with_values(values[self._places])
 
     def map(self, layer: Layer) -> Layer:
         """Return the layer with values for the target."""
@@ -239,13 +269,16 @@ class _LayerMapper:
             transfer = correspondence.transfer if layer.can_blend else correspondence.transfer_labels
             return layer.with_values(transfer(layer.values))
         if layer.kind == layers.SHAPE_KEY:
-            moved = compute.transfer_displacements(
-                self._correspondence, self._source_mesh, self.target_mesh, layer.values
-            )
-            return layer.with_values(moved)
+            return layer.with_values(self._displacements(layer.values))
         if layer.kind == layers.CORNER:
             return layer.with_values(self._corners(layer))
         return layer.with_values(self._faces(layer.values))
+
+    def _displacements(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the displacements of vertices; they are turned and scaled from shape to shape."""
+        moved = self._source.arrays.stretch.of(values)
+        moved = compute.transfer_displacements(self._correspondence, self._source_mesh, self._welded, moved)
+        return self._target.arrays.stretch.inverse.of(moved[self._places])
 
     def _faces(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return for each face what most of its area has on the source."""
@@ -253,7 +286,7 @@ class _LayerMapper:
         labels = self._correspondence.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])
         n_polygons = int(self._target.corner_polygon.max(initial=-1)) + 1
         polygon = self._target.arrays.polygon_of_triangle
-        return kinds[compute.majority_of_polygons(labels, self.target_mesh.areas, polygon, n_polygons)]
+        return kinds[compute.majority_of_polygons(labels, self._target_mesh.areas, polygon, n_polygons)]
 
     def _corners(self, layer: Layer) -> NDArray[np.float64]:
         triangle_of_polygon = np.zeros(int(self._target.corner_polygon.max(initial=-1)) + 1, dtype=np.int64)

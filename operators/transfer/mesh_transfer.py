@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
+from ..mesh_data.unfinished_meshes import modifiers_that_add
 from ..mesh_state.registration_record import SURE
 from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import Messages
@@ -137,10 +138,11 @@ def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: Ma
     return TransferShape(
         name=obj.name,
         arrays=arrays,
-        corners=corners.reshape(-1, 3).astype(np.int64),
+        corners=arrays.stretch.turned(corners.reshape(-1, 3).astype(np.int64)),
         corner_vertex=mesh_arrays.vertex_of_corner(mesh).astype(np.int64),
         corner_polygon=np.repeat(np.arange(len(n_corners)), n_corners),
         options=options,
+        modifiers=modifiers_that_add(obj),
     )
 
 
@@ -159,6 +161,7 @@ def _doubts(obj: bpy.types.Object, source: str, mapped: MappedLayers) -> list[st
     ]
     if mapped.confidence <= SURE:
         doubts.insert(0, f"{obj.name} is matched with a confidence of {mapped.confidence:.0%} only.")
+        doubts += mapped.unfinished
     if is_analyzed(mesh_of(obj)) and any(layer.kind == PARTS for layer in mapped.layers):
         doubts.append(HAS_PARTS.format(obj.name, source))
     return doubts

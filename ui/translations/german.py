@@ -174,7 +174,7 @@ GERMAN: dict[str, str] = {
     "Register Selected": "Auswahl registrieren",
     "Give all selected meshes the parts of the active one: the same numbers, names and colors": "Allen ausgewählten Netzen die Teile des aktiven geben: gleiche Nummern, Namen und Farben",
     "Mirrored": "Gespiegelt",
-    "The meshes are mirror images, such as a left hand and a right one; not needed where only the scale of an object mirrors it": "Die Netze sind Spiegelbilder, wie linke und rechte Hand; nicht nötig, wo nur die Skalierung eines Objekts spiegelt",
+    "The meshes are mirror images, such as a left hand and a right one, or as a negative scale makes them": "Die Netze sind Spiegelbilder, wie linke und rechte Hand, oder wie eine negative Skalierung sie macht",
     "Flip Function": "Funktion umkehren",
     "Function": "Funktion",
     "Which function of the reference, counted from the smoothest": "Welche Funktion der Vorlage, von der glattesten an gezählt",

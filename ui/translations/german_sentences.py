@@ -14,6 +14,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "A triangle refers to a vertex that does not exist.": "Ein Dreieck verweist auf einen Punkt, den es nicht gibt.",
     "A vertex has a coordinate that is not a finite number; repair or delete it.": "Ein Punkt hat eine Koordinate, die keine endliche Zahl ist; bitte reparieren oder löschen.",
     "The faces of the mesh have no area; check the scale of the object and merged vertices.": "Die Flächen des Netzes haben keinen Inhalt; die Skalierung des Objekts und verschmolzene Punkte prüfen.",
+    "The object is scaled to nothing along a direction, by its own scale or that of a parent; change it first.": "Das Objekt ist in einer Richtung auf nichts skaliert, durch seine eigene Skalierung oder die eines übergeordneten; diese zuerst ändern.",
     "The {} must be an array of numbers of shape (n, 3).": "„{}“ muss ein Zahlenfeld der Form (n, 3) sein.",
     "The {} must have the shape (n, 3), not {}.": "„{}“ muss die Form (n, 3) haben, nicht {}.",
     "The largest connected piece of the mesh is a single triangle; merge the vertices of the faces first.": "Das größte zusammenhängende Stück des Netzes ist ein einziges Dreieck; zuerst die Punkte der Flächen verschmelzen.",
@@ -67,6 +68,8 @@ GERMAN_SENTENCES: dict[str, str] = {
     # What is stored.
     "This mesh was analyzed by a newer version of Eigenparts; update the extension or analyze the mesh again.": "Dieses Netz wurde mit einer neueren Version von Eigenparts analysiert; die Erweiterung aktualisieren oder noch einmal analysieren.",
     "The mesh was changed after it was analyzed; analyze it again.": "Das Netz wurde nach der Analyse geändert; bitte noch einmal analysieren.",
+    "The object was scaled after it was analyzed, or its parent was, so its shape is another one; analyze it again, or take the scale back.": "Das Objekt wurde nach der Analyse skaliert, oder das übergeordnete, darum hat es eine andere Gestalt; noch einmal analysieren, oder die Skalierung zurücknehmen.",
+    "The mesh is used by {}, too, which is scaled otherwise and shows the same parts; make it single-user to analyze each by itself.": "Das Netz wird auch von {} benutzt, das anders skaliert ist und dieselben Teile zeigt; zum Einzelbenutzer machen, um jedes für sich zu analysieren.",
     'The mesh has an attribute "{}" that is not from Eigenparts; rename or delete it.': "Das Netz hat ein Attribut „{}“, das nicht von Eigenparts ist; umbenennen oder löschen.",
     'The attribute "{}" of the analysis is gone; analyze the mesh again.': "Das Attribut „{}“ der Analyse ist weg; das Netz noch einmal analysieren.",
     "The parts that some corrections by hand belong to are not found any more; these corrections were removed.": "Die Teile, zu denen manche Berichtigungen gehören, sind nicht mehr zu finden; diese Berichtigungen wurden entfernt.",
@@ -131,6 +134,8 @@ GERMAN_SENTENCES: dict[str, str] = {
     "The sign of a function is +1 or -1, not {}.": "Das Vorzeichen einer Funktion ist +1 oder -1, nicht {}.",
     "The matching is for other shapes than these two.": "Die Zuordnung gehört zu anderen Gestalten als diesen beiden.",
     'The metric is "hausdorff" or "bottleneck", not "{}".': "Die Metrik ist „hausdorff“ oder „bottleneck“, nicht „{}“.",
+    'The modifier "{}" of {} adds to the mesh or takes from it, and the mesh is matched without it; apply the modifier first.': "Der Modifikator „{}“ von {} fügt dem Netz etwas hinzu oder nimmt etwas weg, und das Netz wird ohne ihn zugeordnet; zuerst den Modifikator anwenden.",
+    'The modifiers "{}" of {} add to the mesh or take from it, and the mesh is matched without them; apply the modifiers first.': "Die Modifikatoren „{}“ von {} fügen dem Netz etwas hinzu oder nehmen etwas weg, und das Netz wird ohne sie zugeordnet; zuerst die Modifikatoren anwenden.",
     # Transfer.
     "Select the meshes to transfer to, and last the one to transfer from.": "Die Netze auswählen, auf die übertragen wird, zuletzt das, von dem übertragen wird.",
     "Choose at least one layer to transfer.": "Mindestens eine Ebene zum Übertragen wählen.",
