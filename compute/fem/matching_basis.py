@@ -48,6 +48,6 @@ def _with_signs_of(shown: Eigenbasis, basis: Eigenbasis, n_vertices: int) -> Eig
 
 def _n_unknowns(surface: Surface, order: int) -> int:
     """Return how many unknowns elements of an order have on a surface."""
-    n_vertices, n_triangles = len(np.unique(surface.mesh.triangles)), len(surface.mesh.triangles)
+    n_vertices, n_triangles = len(surface.mesh.used), len(surface.mesh.triangles)
     n_edges = len(surface.mesh.edges.vertices)
     return n_vertices + (order - 1) * n_edges + (order - 1) * (order - 2) // 2 * n_triangles

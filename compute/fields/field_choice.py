@@ -61,7 +61,7 @@ def resolved_order(order: int | str, surface: Surface) -> OrderChoice:
 def n_available(surface: Surface, boundary: str) -> int:
     """Return a number of functions that elements of every order carry, one at least."""
     edges = surface.mesh.edges
-    n_vertices = len(np.unique(surface.mesh.triangles))
+    n_vertices = len(surface.mesh.used)
     n_held = len(np.unique(edges.vertices[edges.n_triangles == 1])) if boundary == "dirichlet" else 1
     return max(n_vertices - n_held, 1)
 

@@ -11,6 +11,8 @@ from .diagram import PersistenceDiagram
 
 # The search for the bottleneck is narrowed to this fraction of its value before distances are listed.
 NARROW = 1e-3
+# Denormal numbers cannot be halved for ever.
+MOST_HALVINGS = 200
 
 
 def diagram_distance(first: PersistenceDiagram, second: PersistenceDiagram, metric: str = "hausdorff") -> float:
@@ -67,7 +69,9 @@ def bottleneck_distance(first: Floats, second: Floats) -> float:
     low, high = hausdorff_distance(first, second), float(to_diagonal.max(initial=0.0))
     if _can_match(first, second, low):
         return low
-    while high - low > NARROW * high:
+    for _ in range(MOST_HALVINGS):
+        if high - low <= NARROW * high:
+            break
         middle = 0.5 * (low + high)
         low, high = (low, middle) if _can_match(first, second, middle) else (middle, high)
     near = _distances(first, second, high * (1 + NARROW))[2]

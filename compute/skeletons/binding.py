@@ -117,6 +117,5 @@ def _place_of_input(analysis: Analysis, used: Ints) -> Ints:
     place = place[analysis.surface.vertex_of_input]
     loose = np.flatnonzero(place < 0)
     if len(loose):
-        finite = np.nan_to_num(vertices[loose])
-        place[loose] = cKDTree(vertices[used]).query(finite)[1]
+        place[loose] = cKDTree(vertices[used]).query(vertices[loose])[1]
     return place

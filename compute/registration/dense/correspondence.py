@@ -145,7 +145,7 @@ def correspond(
     source_shape = shapes[0].mirrored() if matching.mirrored else shapes[0]
     pair = ShapePair(source=source, target=target, source_shape=source_shape, target_shape=shapes[1], matching=matching)
     if matching.same_topology:
-        return _correspondence(pair, map_by_number(target.mesh), BY_NUMBER)
+        return _correspondence(pair, map_by_number(source, target), BY_NUMBER)
     _check_matching(pair)
     progress(0.5, "Comparing the faces")
     if (image := map_by_faces(pair)) is not None:

@@ -164,7 +164,11 @@ def label_matched(
     progress(0.8, "Carrying the parts over")
     cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
-    same_faces = matching.same_topology and np.array_equal(reference.shape.face, target.face)
+    same_faces = (
+        matching.same_topology
+        and np.array_equal(reference.shape.face, target.face)
+        and len(reference.shape.graph.stands_for) == len(target.graph.stands_for)
+    )
     return transfer_labels(reference.parts.given, target, None if same_faces else to_reference, cuts, level)
 
 
