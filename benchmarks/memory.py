@@ -48,9 +48,9 @@ def _analyze(mesh: TriangleMesh, order: int | str, n_functions: int | None = Non
     return lambda: analyze(mesh, order=order, n_functions=n_functions)
 
 
-def _of_analysis(work: Callable[[Analysis], object]) -> Callable[[TriangleMesh], Work]:
+def _of_analysis(work: Callable[[Analysis], object], order: int | str = "auto") -> Callable[[TriangleMesh], Work]:
     def prepared(mesh: TriangleMesh) -> Work:
-        analysis = analyze(mesh)
+        analysis = analyze(mesh, order=order)
         return lambda: work(analysis)
 
     return prepared
@@ -73,11 +73,13 @@ def _of_pair(work: Callable[[Analysis, Analysis], object]) -> Callable[[Triangle
 STAGES: dict[str, Callable[[TriangleMesh], Work]] = {
     **{f"analyze, order {order}": lambda mesh, order=order: _analyze(mesh, order) for order in (1, 2, 3, "auto")},
     **{
-        f"solve_eigenbasis, order {order}, 100 functions": lambda mesh, order=order: lambda: solve_eigenbasis(
-            mesh, 100, order=order
+        f"solve_eigenbasis, order {order}, 100 functions": lambda mesh, order=order: (
+            lambda: solve_eigenbasis(mesh, 100, order=order)
         )
         for order in (1, 2, 3)
     },
+    "segment, order 1": _of_analysis(lambda analysis: analysis.segment(), order=1),
+    "skeleton, order 1": _of_analysis(skeleton, order=1),
     "segment": _of_analysis(lambda analysis: analysis.segment()),
     "borders": _of_analysis(lambda analysis: analysis.segment().borders),
     "skeleton": _of_analysis(skeleton),
@@ -100,7 +102,9 @@ def main(arguments: list[str] | None = None) -> int:
         shape, size, stage = options.one
         sys.stdout.write(json.dumps(_measure(_mesh(shape, int(size)), stage)))
         return 0
-    sys.stdout.write("| stage | shape | vertices | MB taken | MB said before | said / taken |\n|---|---|---|---|---|---|\n")
+    sys.stdout.write(
+        "| stage | shape | vertices | MB taken | MB said before | said / taken |\n|---|---|---|---|---|---|\n"
+    )
     for stage in options.stages:
         for shape in options.shapes:
             for size in options.vertices:
@@ -139,7 +143,11 @@ def _status(name: str) -> float:
 
 def _record_needs() -> list[float]:
     """Return a list that gets the bytes of every estimate that is checked from now on."""
-    return []
+    needs: list[float] = []
+    for module in list(sys.modules.values()):
+        if module.__name__.startswith("compute.") and hasattr(module, "require_memory"):
+            module.require_memory = lambda needed, *_: needs.append(needed)
+    return needs
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Memory at hand, so that work which will not fit is refused before it starts, and told where it is full all the same."""
+"""Memory at hand: work that will not fit is refused before it starts, and a full memory is told in a sentence."""
 
 import ctypes
 import os
@@ -52,6 +52,31 @@ def available_memory() -> float:
     if sys.platform == "win32":
         return _available_on_windows()
     return min([_free_in_machine(), *_free_in_groups(), *_free_in_process()])
+
+
+def require_memory(needed: float, refusal: str, *numbers: int) -> None:
+    """Refuse work that needs more bytes than there are.
+
+    Parameters
+    ----------
+    needed : float
+    refusal : str
+        The sentence, with places for the numbers, for what is needed and for what is free.
+    numbers : int
+        What the need follows from, such as vertices.
+
+    Raises
+    ------
+    MeshError
+        If the memory at hand is less.
+    """
+    at_hand = available_memory()
+    if needed > at_hand:
+        raise MeshError(refusal.format(*numbers, _amount(needed), _amount(at_hand)))
+
+
+def _amount(n_bytes: float) -> str:
+    return f"{n_bytes / 1e9:.1f} GB" if n_bytes >= 1e9 else f"{n_bytes / 1e6:.1f} MB"
 
 
 def told_if_full(work: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:

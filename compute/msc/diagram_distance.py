@@ -6,6 +6,7 @@ from scipy.sparse.csgraph import maximum_bipartite_matching
 from scipy.spatial import cKDTree
 
 from ..errors import FieldError
+from ..memory import told_if_full
 from ..surface.mesh import Bools, Floats, Ints
 from .diagram import PersistenceDiagram
 
@@ -15,6 +16,7 @@ NARROW = 1e-3
 MOST_HALVINGS = 200
 
 
+@told_if_full
 def diagram_distance(first: PersistenceDiagram, second: PersistenceDiagram, metric: str = "hausdorff") -> float:
     """Return the distance of two separated diagrams in the maximum norm; the diagonal belongs to both.
 

@@ -15,7 +15,7 @@ MOST_SLICES = 48
 LEAST_TRIANGLES = 40
 # Of the mean rise of an arc's slices, at the least.
 LEAST_RISE = 0.05
-# Where a field is level, its gradients are this fraction of the steepest, and its slices this thin in units of the shape.
+# Where a field is level, its gradients are this fraction of the steepest, and slices this thin in sizes of the shape.
 LEVEL = 1e-9
 
 
@@ -152,7 +152,7 @@ def _level_lengths(corners: Floats, values: Floats) -> Floats:
 
 
 def _rises(lowest: Floats, offset: Ints, ends: Floats, least: float) -> Floats:
-    """Return (S,) the rise of the field through each slice, given the ends (A, 2) of the arcs, and the least there is."""
+    """Return (S,) the rise of the field through each slice, given the ends (A, 2) of the arcs, at least the last."""
     count = np.diff(offset)
     filled = np.flatnonzero(count)
     bottom = lowest.copy()

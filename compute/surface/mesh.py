@@ -198,6 +198,21 @@ def with_loose_inside(places: Floats, triangles: Ints) -> Floats:
     return inside
 
 
+def checked_labels(mesh: TriangleMesh, labels: ArrayLike) -> NDArray[np.int32]:
+    """Return the parts of the triangles as whole numbers.
+
+    Raises
+    ------
+    MeshError
+        If there is not one for each triangle, zero or more.
+    """
+    numbers = np.asarray(labels)
+    n_triangles = len(mesh.triangles)
+    if numbers.shape != (n_triangles,) or numbers.dtype.kind not in "iu" or numbers.min() < 0:
+        raise MeshError(f"The parts need a whole number, zero or more, for each of the {n_triangles} triangles.")
+    return numbers.astype(np.int32)
+
+
 def _is_used(triangles: Ints, n_vertices: int) -> Bools:
     is_used = np.zeros(n_vertices, dtype=bool)
     is_used[triangles] = True

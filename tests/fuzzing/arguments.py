@@ -22,6 +22,10 @@ class Case:
     def _choice(self, *values: Any) -> Any:
         return values[self.rng.integers(len(values))]
 
+    def usual(self, *values: Any, wrong: tuple[Any, ...]) -> Any:
+        """Return one of some values, or seldom one that is to be refused."""
+        return self._choice(*(wrong if self.rng.random() < 0.06 else values))
+
     @cached_property
     def mesh(self) -> compute.TriangleMesh:
         return compute.TriangleMesh(*random_mesh(self.rng))
@@ -66,12 +70,13 @@ class Case:
     def field(self) -> Any:
         values = self.rng.standard_normal(len(self.mesh.vertices))
         some = self.rng.random(len(values)) < 0.02
-        own = self._choice(
-            *(values, np.zeros_like(values), np.round(values), 1e30 * values, 1e-30 * values, values.astype(np.float32)),
-            *(1e300 * values, 1e-310 * values, 1e30 + values, 1e154 * values),
-            *(np.where(some, np.nan, values), np.where(some, np.inf, values), values[1:]),
-        )
-        return self._choice("diffusion", "diffusion", int(self.rng.integers(-1, 7)), own, "heat")
+        with np.errstate(all="ignore"):
+            own = self.usual(
+                *(values, 0 * values, np.round(values), 1e30 * values, 1e-30 * values, 1e30 + values),
+                *(values.astype(np.float32), self.mesh.vertices[:, 0]),
+                wrong=(1e300 * values, 1e-310 * values, np.where(some, np.nan, values), values[1:]),
+            )
+        return self.usual(*("diffusion",) * 5, int(self.rng.integers(1, 6)), own, own, wrong=("heat", 0, -1, 99))
 
     @cached_property
     def segmentation(self) -> compute.Segmentation:
@@ -80,18 +85,18 @@ class Case:
     @property
     def level(self) -> int | None:
         n_levels = self.analysis.hierarchy.n_levels
-        return self._choice(None, None, 0, n_levels - 1, int(self.rng.integers(n_levels)), n_levels, -1, 10**9)
+        return self.usual(None, None, 0, n_levels - 1, int(self.rng.integers(n_levels)), wrong=(n_levels, -1, 10**9))
 
     @property
     def mode(self) -> str:
-        return self._choice(*compute.MODES * 4, "other")
+        return self.usual(*compute.MODES, wrong=("other",))
 
     @property
     def labels(self) -> np.ndarray:
         """Those of a division, random ones, or those of another mesh."""
         labels = self.segmentation.labels
         random = self.rng.integers(0, 5, len(labels)).astype(np.int32)
-        return self._choice(labels, labels, labels, random, labels[1:], -1 - labels, labels.astype(np.float64))
+        return self.usual(labels, labels, random, wrong=(labels[1:], -1 - labels, labels.astype(np.float64)))
 
     @cached_property
     def skeleton(self) -> compute.Skeleton:
@@ -117,20 +122,20 @@ MAKERS: dict[str, Maker] = {
     "analysis": lambda case: case.analysis,
     "source": lambda case: case.analysis,
     "target": lambda case: case.target,
-    "analyses": lambda case: [case.analysis, case.target][: case._choice(1, 2, 2, 2, 0)],
+    "analyses": lambda case: [case.analysis, case.target][: case.usual(1, 2, 2, wrong=(0,))],
     "skeleton": lambda case: case.skeleton,
     "correspondence": lambda case: case.correspondence,
     "segmentation": lambda case: case.segmentation,
     "basis": lambda case: case.analysis.eigenbasis,
     "field": lambda case: case.field,
-    "n_functions": lambda case: case._choice(None, 0, -3, 1, 2, 3, 7, 40, 200, 10**6),
-    "solve_eigenbasis.n_functions": lambda case: case._choice(12, 12, 0, -3, 1, 2, 40, 200, 10**6),
-    "judge_eigenfunctions.n_functions": lambda case: case._choice(8, 0, -1, 3, 100),
-    "order": lambda case: case._choice(case.order, case.order, 0, 4, "cubic"),
-    "solve_eigenbasis.order": lambda case: case._choice(1, 1, 2, 3, 0, 4),
-    "boundary": lambda case: case._choice(case.boundary, case.boundary, "open"),
-    "shells": lambda case: case._choice(case.shells, case.shells, "all"),
-    "component": lambda case: case._choice(None, 0, 1, -1, 99),
+    "n_functions": lambda case: case.usual(None, 1, 2, 3, 7, wrong=(0, -3, 40, 200, 10**6)),
+    "solve_eigenbasis.n_functions": lambda case: case.usual(7, 1, 2, wrong=(0, -3, 40, 200, 10**6)),
+    "judge_eigenfunctions.n_functions": lambda case: case.usual(8, 3, 100, wrong=(0, -1)),
+    "order": lambda case: case.usual(case.order, wrong=(0, 4, "cubic")),
+    "solve_eigenbasis.order": lambda case: case.usual(1, 2, 3, wrong=(0, 4)),
+    "boundary": lambda case: case.usual(case.boundary, wrong=("open",)),
+    "shells": lambda case: case.usual(case.shells, wrong=("all",)),
+    "component": lambda case: case.usual(None, 0, wrong=(1, -1, 99)),
     "progress": lambda case: lambda fraction, text: None,
     "level": lambda case: case.level,
     "mode": lambda case: case.mode,
@@ -139,21 +144,21 @@ MAKERS: dict[str, Maker] = {
     "essential": lambda case: case._choice(False, True),
     "within": lambda case: case._choice(None, int(case.rng.choice(case.analysis.segment().parts.id)), 99),
     "labels": lambda case: case.labels,
-    "poses": lambda case: case._choice([], [case.pose], [case.pose, case.pose], [case.pose[1:]], [case.pose * np.nan]),
-    "n_pieces": lambda case: case._choice(1, 2, 5, 0, -1),
+    "poses": lambda case: case.usual([], [case.pose] * 2, wrong=([case.pose[1:]], [case.pose * np.nan])),
+    "n_pieces": lambda case: case.usual(1, 2, 5, wrong=(0, -1)),
     "partner": lambda case: case._choice(None, compute.mirror_parts(case.analysis, case.segmentation.labels)),
     "layout": lambda case: case._choice(None, case.skeleton.layout),
-    "softness": lambda case: case._choice(0.6, 0.0, case.number),
-    "function": lambda case: int(case.rng.integers(-1, 6)),
+    "softness": lambda case: case.usual(0.6, 0.0, 1e3, wrong=(np.nan, np.inf, -1.0)),
+    "function": lambda case: case.usual(1, 2, 3, wrong=(0, -1, 99)),
     "matching": lambda case: case._choice(None, None, compute.match(case.analysis, case.target)),
     "mirrored": lambda case: case._choice(False, True),
-    "flips": lambda case: case._choice(None, {1: -1}, {1: 1, 2: -1}, {0: 1}, {3: 0}),
+    "flips": lambda case: case.usual(None, {1: -1}, {1: 1, 2: -1}, wrong=({0: 1}, {3: 0})),
     "executor": lambda case: None,
-    "reference": lambda case: case._choice(0, 0, 1, -1, 5),
+    "reference": lambda case: case.usual(0, 0, 1, wrong=(-1, 5)),
     "first": lambda case: case.analysis.diagram,
     "second": lambda case: case.target.diagram,
     "diagram": lambda case: case.analysis.diagram,
-    "metric": lambda case: case._choice("hausdorff", "bottleneck", "bottleneck", "other"),
+    "metric": lambda case: case.usual("hausdorff", "bottleneck", wrong=("other",)),
     "x": lambda case: case.number,
     "y": lambda case: case.number,
     "fill_unsure.target": lambda case: case.target.mesh,

@@ -99,7 +99,7 @@ def _arguments(path: str, case: Case) -> dict[str, Any]:
     """Return a value for each parameter that has to be given, and for some of the others."""
     given = {}
     for name, parameter in inspect.signature(CALLS[path]).parameters.items():
-        if parameter.default is inspect.Parameter.empty or case.rng.random() < 0.4:
+        if parameter.default is inspect.Parameter.empty or case.rng.random() < 0.3:
             given[name] = _maker(path, name)(case)
     return given
 

@@ -36,20 +36,22 @@ def same(first: Any, second: Any) -> bool:
 
 def _leaves(result: Any) -> Iterator[Any]:
     """Yield the arrays, numbers and texts in a result, in their order."""
-    if is_dataclass(result):
-        for field in fields(result):
-            if not field.name.startswith("_") and field.name not in ("shape", "field_choice"):
-                yield from _leaves(getattr(result, field.name))
-    elif isinstance(result, dict):
-        for key in sorted(result, key=str):
-            yield from _leaves(result[key])
-    elif isinstance(result, list | tuple):
-        for value in result:
-            yield from _leaves(value)
-    elif issparse(result):
-        yield from (result.data, result.indices)
-    elif isinstance(result, np.ndarray | np.generic | int | float | str):
+    for value in _inside(result):
+        yield from _leaves(value)
+    if isinstance(result, np.ndarray | np.generic | int | float | str):
         yield result
+
+
+def _inside(result: Any) -> list[Any]:
+    """Return what a table, a list, a sparse matrix or a result of the engine consists of."""
+    if is_dataclass(result):
+        names = [field.name for field in fields(result) if not field.name.startswith("_")]
+        return [getattr(result, name) for name in names if name not in ("shape", "field_choice")]
+    if isinstance(result, dict):
+        return [result[key] for key in sorted(result, key=str)]
+    if issparse(result):
+        return [result.data, result.indices]
+    return list(result) if isinstance(result, list | tuple) else []
 
 
 def _of_properties(result: Any) -> list[str]:
@@ -91,9 +93,16 @@ def _segmentation(result: compute.Segmentation, mesh: compute.TriangleMesh, _: c
 def _skeleton(result: compute.Skeleton, mesh: compute.TriangleMesh, _: compute.TriangleMesh) -> list[str]:
     n_joints = len(result.joints)
     found = []
-    if result.parent[0] != -1 or not (result.parent[1:] < np.arange(1, n_joints)).all() or (result.parent[1:] < 0).any():
+    if (
+        result.parent[0] != -1
+        or not (result.parent[1:] < np.arange(1, n_joints)).all()
+        or (result.parent[1:] < 0).any()
+    ):
         found.append("bones that are no tree")
-    if result.bone_of_vertex.shape != (len(mesh.vertices),) or not np.isin(result.bone_of_vertex, range(n_joints)).all():
+    if (
+        result.bone_of_vertex.shape != (len(mesh.vertices),)
+        or not np.isin(result.bone_of_vertex, range(n_joints)).all()
+    ):
         found.append("vertices without a bone")
     if not (result.radius > 0).all() or (result.loops < 0).any() or (result.loops >= n_joints).any():
         found.append("radii or loops that cannot be")
@@ -104,7 +113,10 @@ def _correspondence(
     result: compute.Correspondence, source: compute.TriangleMesh, target: compute.TriangleMesh
 ) -> list[str]:
     found = []
-    if result.triangles.shape != (len(target.vertices),) or not np.isin(result.triangles, range(len(source.triangles))).all():
+    if (
+        result.triangles.shape != (len(target.vertices),)
+        or not np.isin(result.triangles, range(len(source.triangles))).all()
+    ):
         found.append("vertices without a triangle of the source")
     if result.barycentric.min() < -1e-9 or np.abs(result.barycentric.sum(axis=1) - 1).max() > 1e-9:
         found.append("places outside their triangles")

@@ -211,4 +211,3 @@ def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, targ
         area=area[ids],
         n_triangles=count[ids],
     )
-
