@@ -12,7 +12,7 @@ from .lagrange import reference_element
 BYTES_PER_UNKNOWN = 4200
 # More functions take more: so much for each and each unknown.
 USUAL_FUNCTIONS = 30
-BYTES_PER_VALUE = 30
+BYTES_PER_VALUE = 36
 # Where functions are many for their unknowns, full matrices are solved: so much for each entry.
 BYTES_PER_ENTRY = 40
 
