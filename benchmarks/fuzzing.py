@@ -1,6 +1,8 @@
 """Broken meshes by the thousand: each gives a division or a sentence, the same one twice.
 
-usage: python -m benchmarks.fuzzing [--cases N] [--seed S] [--jobs N] [--log FILE]
+usage: python -m benchmarks.fuzzing [--cases N] [--seed S] [--jobs N] [--log FILE] [--calls [NAME ...]]
+
+With --calls it is calls of the scripting API, all or those named, each with random arguments of every kind.
 
 Case k of a seed is the same mesh wherever it runs. A log that exists is continued; the table is printed at the end.
 """
@@ -9,6 +11,7 @@ import argparse
 import json
 import sys
 import tempfile
+import time
 import warnings
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
@@ -21,6 +24,7 @@ import numpy as np
 
 from compute import EngineError, TriangleMesh, analyze
 from tests.damage import DAMAGES, SHAPES, damaged
+from tests.fuzzing.calls import CALLS, tried
 
 CHUNK = 50
 MOST_STEPS = 4
@@ -33,7 +37,10 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--log", type=Path, default=Path(tempfile.gettempdir()) / "eigenparts-fuzzing.jsonl")
+    parser.add_argument("--calls", nargs="*", choices=sorted(CALLS), help="calls of the scripting API instead")
     options = parser.parse_args(arguments)
+    if options.calls is not None:
+        return try_calls(options.calls or sorted(CALLS), options.seed, options.cases, options.jobs)
     rows = _read(options.log, options.seed)
     chunks = [first for first in range(0, options.cases, CHUNK) if first not in rows]
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool, options.log.open("a") as log:
@@ -43,6 +50,32 @@ def main(arguments: list[str] | None = None) -> int:
             log.flush()
     sys.stdout.write(table(list(rows.values())))
     return int(any(row["faults"] for row in rows.values()))
+
+
+def try_calls(paths: list[str], seed: int, n_cases: int, n_jobs: int) -> int:
+    """Print for each call how many cases gave a result and how many a sentence, and the faults; 1 if there were any."""
+    sys.stdout.write("| call | cases | results | sentences | faults | CPU s |\n|---|---|---|---|---|---|\n")
+    faults: list[str] = []
+    with ProcessPoolExecutor(n_jobs, mp_context=get_context("spawn")) as pool:
+        for path, row in zip(paths, pool.map(partial(_try_call, seed, n_cases), paths), strict=True):
+            *counts, seconds, found = row
+            sys.stdout.write(
+                f"| {path} | {n_cases} | {' | '.join(map(str, counts))} | {len(found)} | {seconds:.1f} |\n"
+            )
+            sys.stdout.flush()
+            faults += found
+    sys.stdout.write("\n".join(["", *faults, f"{n_cases * len(paths)} cases, {len(faults)} faults.", ""]))
+    return int(bool(faults))
+
+
+def _try_call(seed: int, n_cases: int, path: str) -> tuple[int, int, float, list[str]]:
+    """Return numbers of results and sentences, CPU seconds, and the faults with the numbers that repeat them."""
+    start = time.process_time()
+    outcomes = [tried(path, seed, number) for number in range(n_cases)]
+    found = [f"{path} {number}: {fault}" for number, outcome in enumerate(outcomes) for fault in outcome.faults]
+    n_sentences = sum(outcome.sentence is not None for outcome in outcomes)
+    n_results = sum(outcome.sentence is None and not outcome.faults for outcome in outcomes)
+    return n_results, n_sentences, time.process_time() - start, found
 
 
 def table(rows: list[dict[str, Any]]) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 
 from benchmarks.spectrum_solvers import subdivide
 from compute import TriangleMesh, analyze
-from compute.fem.order_choice import LEAST_BYTES_PER_VERTEX
+from compute.fem.order_choice import memory_of_functions
 from examples import humanoid
 
 SIZES = (13_000, 50_000, 200_000, 500_000)
@@ -81,8 +81,7 @@ def _measure(mesh: TriangleMesh, order: str) -> list[Any]:
         f"{time.perf_counter() - wall:.1f}",
         f"{peak / 1e9:.2f}",
         f"{peak / 1e3 / size:.1f}",
-        # The estimate decides whether the work starts, so it is that of linear elements.
-        f"{LEAST_BYTES_PER_VERTEX * size / 1e9:.2f}" if analysis.eigenbasis.order == 1 else "",
+        f"{memory_of_functions(len(analysis.eigenbasis.nodes)) / 1e9:.2f}",
         n_parts,
         _longest(stages),
     ]

@@ -14,6 +14,7 @@ from ..fem.eigenbasis import Eigenbasis, solve_on_surface
 from ..fem.matching_basis import MatchingBasis
 from ..fields.field_choice import DEFAULT_FUNCTIONS, n_available
 from ..fields.scalar_field import DIFFUSION, Net, ScalarField
+from ..memory import require_memory, told_if_full
 from ..msc.diagram import PersistenceDiagram
 from ..msc.morse_smale import FieldTopology, MorseSmaleComplex
 from ..progress import Progress, silent
@@ -42,6 +43,11 @@ from ..surface.mesh import Ints, TriangleMesh
 WITHIN_THRESHOLD = 0.004
 # And has at least this many faces.
 LEAST_FACES_WITHIN = 8
+# Peak memory of dividing the faces and of tracing their borders, for each vertex of the net (docs/method.md).
+BYTES_PER_NODE = 400
+TOO_MANY_FACES = (
+    "Dividing {:,} faces takes about {} of memory, and {} are free; decimate the mesh or close other programs."
+)
 APART = (
     "Each loose part was analyzed by itself, so there is no one shape to be matched or to get bones; analyze the mesh"
     " with its loose parts bridged, or the largest alone."
@@ -124,6 +130,7 @@ class Analysis:
         """
         return self.find_matching_basis(silent)
 
+    @told_if_full
     def find_matching_basis(self, progress: Progress) -> Eigenbasis:
         """Return ``matching_basis``, and report progress if it has to be computed.
 
@@ -210,6 +217,7 @@ class Analysis:
         hierarchy, arcs, measures = measured_hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
         return dataclasses.replace(self, hierarchy=hierarchy, measures=measures, _arc_of_vertex=arcs)
 
+    @told_if_full
     def part_tree(self, face_of_triangle: Ints | None = None) -> PartTree:
         """Return the hierarchy with the faces of its arcs: all that the parts of any level are read from.
 
@@ -237,6 +245,7 @@ class Analysis:
         return self._part_tree(np.arange(len(self.mesh.triangles)))
 
     def _part_tree(self, face_of_triangle: Ints) -> PartTree:
+        require_memory(BYTES_PER_NODE * len(self.net.positions), TOO_MANY_FACES, len(self.mesh.triangles))
         graph = face_graph(self.mesh, self.surface, face_of_triangle)
         face = face_of_triangle[self.surface.input_triangle][self.net.triangle_of_surface]
         shares = [
@@ -247,6 +256,7 @@ class Analysis:
         branches = build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
         return PartTree(self.hierarchy, self.measures, heights, branches)
 
+    @told_if_full
     def profile(self, edges: Ints | None = None) -> EdgeProfile:
         """Return the field along edges of the input.
 
@@ -268,6 +278,7 @@ class Analysis:
         edges = self.mesh.edges.vertices if edges is None else edges
         return edge_profile(self.surface, self.field, self._arc_of_vertex, edges)
 
+    @told_if_full
     def borders(self, level: int | None = None, mode: str = NESTED) -> tuple[Polyline, ...]:
         """Return the lines on the triangles of the input along which the parts of a level end.
 
@@ -299,6 +310,7 @@ class Analysis:
         crossings = cross_edges(self.profile(), part_tree.trees, part_tree.closing_heights, cuts)
         return trace_borders(self.mesh, crossings, part_of_border(cuts))
 
+    @told_if_full
     def segment(
         self,
         *,

@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike
 from ..fem.matching_basis import MatchingBasis
 from ..fields.field_choice import choose_field
 from ..fields.shell_fields import choose_fields
+from ..memory import told_if_full
 from ..msc.links import links_of
 from ..msc.morse_smale import FieldTopology
 from ..progress import Progress, rising, section, silent
@@ -15,6 +16,7 @@ from ..surface.mesh import TriangleMesh
 from .analysis import Analysis
 
 
+@told_if_full
 def analyze(
     mesh: TriangleMesh,
     *,

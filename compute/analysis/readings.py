@@ -1,12 +1,14 @@
 """The Reeb graph and the zero levels of an analysis: what is read from it beside the parts of levels."""
 
 from ..fields.scalar_field import eigenfunction_field
+from ..memory import told_if_full
 from ..msc.reeb import ReebGraph
 from ..segmentation.parts.part_labels import Segmentation
 from ..segmentation.parts.zero_level import divide_at_zero
 from .analysis import Analysis
 
 
+@told_if_full
 def reeb_graph(analysis: Analysis, *, level: int | None = None) -> ReebGraph:
     """Return the Reeb graph of the field with the net triangles of each arc.
 
@@ -40,6 +42,7 @@ def reeb_graph(analysis: Analysis, *, level: int | None = None) -> ReebGraph:
     return analysis.complex_at_level(level).reeb_graph
 
 
+@told_if_full
 def zero_level(analysis: Analysis, function: int = 1) -> Segmentation:
     """Divide a mesh along the zero level of an eigenfunction: a torso, which no feature divides, into halves.
 

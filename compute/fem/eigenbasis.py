@@ -7,12 +7,14 @@ from scipy.sparse import csr_array
 
 from ..choices import BOUNDARIES
 from ..errors import SpectrumError
+from ..memory import told_if_full
 from ..progress import Progress, silent
 from ..surface.cleaning import Surface, clean_surface
 from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
 from .assembly import mass_matrix
 from .degenerate import fixed_basis
 from .eigensolver import eigen_problem, lowest_eigenpairs
+from .order_choice import require_functions
 from .space import FunctionSpace, function_space
 
 # In units of 1 / area; smaller eigenvalues are lost in round-off. A needle of proportion 1 to 1e6 has 1e-5.
@@ -65,6 +67,7 @@ class Eigenbasis:
     surface: Surface
 
 
+@told_if_full
 def solve_eigenbasis(
     mesh: TriangleMesh,
     n_functions: int = 12,
@@ -144,6 +147,7 @@ def solve_on_surface(
     is_free = _free_unknowns(space, boundary)
     n_constant = 1 if boundary == "neumann" else 0
     _check_count(n_functions, int(is_free.sum()) - n_constant)
+    require_functions(surface.mesh, order, n_functions)
     problem = eigen_problem(space, is_free)
     values, functions = lowest_eigenpairs(problem, n_functions + n_constant, n_constant, largest_ratio, progress)
     values, functions = values[n_constant:], functions[:, n_constant:]

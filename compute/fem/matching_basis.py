@@ -7,6 +7,7 @@ import numpy as np
 from ..progress import Progress
 from ..surface.cleaning import Surface
 from .eigenbasis import Eigenbasis, solve_on_surface
+from .order_choice import n_unknowns
 
 # Functions for matching and dense maps, and the least number of unknowns that carry them accurately: elements of a
 # higher order are used where linear ones have fewer.
@@ -31,10 +32,15 @@ class MatchingBasis:
 
 def solve_for_matching(surface: Surface, shown: Eigenbasis | None, progress: Progress) -> Eigenbasis:
     """Return free eigenfunctions of a surface, with the signs of those that the user sees, if there are any."""
-    order = next((order for order in (1, 2) if _n_unknowns(surface, order) >= MATCHING_UNKNOWNS), 3)
-    n_functions = min(MATCHING_FUNCTIONS, _n_unknowns(surface, order) - 1)
+    order = matching_order(surface)
+    n_functions = min(MATCHING_FUNCTIONS, n_unknowns(surface.mesh, order) - 1)
     basis = solve_on_surface(surface, n_functions, order=order, progress=progress)
     return basis if shown is None else _with_signs_of(shown, basis, len(surface.vertex_of_input))
+
+
+def matching_order(surface: Surface) -> int:
+    """Return the lowest order of elements that has enough unknowns for matching."""
+    return next((order for order in (1, 2) if n_unknowns(surface.mesh, order) >= MATCHING_UNKNOWNS), 3)
 
 
 def _with_signs_of(shown: Eigenbasis, basis: Eigenbasis, n_vertices: int) -> Eigenbasis:
@@ -44,10 +50,3 @@ def _with_signs_of(shown: Eigenbasis, basis: Eigenbasis, n_vertices: int) -> Eig
     agreement = (shown.functions[:n_vertices, :n_shared] * functions[:n_vertices, :n_shared]).sum(axis=0)
     functions[:, :n_shared] *= np.where(agreement < 0, -1.0, 1.0)
     return replace(basis, functions=functions)
-
-
-def _n_unknowns(surface: Surface, order: int) -> int:
-    """Return how many unknowns elements of an order have on a surface."""
-    n_vertices, n_triangles = len(np.unique(surface.mesh.triangles)), len(surface.mesh.triangles)
-    n_edges = len(surface.mesh.edges.vertices)
-    return n_vertices + (order - 1) * n_edges + (order - 1) * (order - 2) // 2 * n_triangles

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import FieldError
 from ..fem.eigenbasis import Eigenbasis, solve_on_surface
-from ..fem.order_choice import OrderChoice, choose_order
+from ..fem.order_choice import OrderChoice, choose_order, require_order
 from ..progress import Progress
 from ..surface.cleaning import Surface
 from .scalar_field import (
@@ -52,6 +52,7 @@ def choose_field(
 def resolved_order(order: int | str, surface: Surface) -> OrderChoice:
     """Return the order that is asked for, or the one that a surface can afford."""
     if not isinstance(order, str):
+        require_order(surface.mesh, order)
         return OrderChoice(order)
     if order != "auto":
         raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')
@@ -61,7 +62,7 @@ def resolved_order(order: int | str, surface: Surface) -> OrderChoice:
 def n_available(surface: Surface, boundary: str) -> int:
     """Return a number of functions that elements of every order carry, one at least."""
     edges = surface.mesh.edges
-    n_vertices = len(np.unique(surface.mesh.triangles))
+    n_vertices = len(surface.mesh.used)
     n_held = len(np.unique(edges.vertices[edges.n_triangles == 1])) if boundary == "dirichlet" else 1
     return max(n_vertices - n_held, 1)
 

@@ -11,7 +11,7 @@ from ..errors import FieldError
 from ..fem.eigenbasis import Eigenbasis
 from ..fem.lagrange import reference_element
 from ..surface.cleaning import Surface
-from ..surface.mesh import Floats, Ints
+from ..surface.mesh import LARGEST_NUMBER, Floats, Ints
 from ..surface.ties import evened
 
 DIFFUSION = FIELDS[0]
@@ -48,6 +48,11 @@ class Net:
     triangles: Ints
     triangle_of_surface: Ints
     areas: Floats
+
+    @cached_property
+    def used(self) -> Ints:
+        """(U,) the vertices of the triangles, rising."""
+        return np.unique(self.triangles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,20 +120,31 @@ def user_field(surface: Surface, values: ArrayLike) -> ScalarField:
     Raises
     ------
     FieldError
-        If there is not one finite number for each vertex.
+        If there is not one finite number for each vertex of the surface, or the numbers are too large or too close to
+        each other to be computed with.
     """
     numbers = np.asarray(values, dtype=np.float64)
     n_vertices = len(surface.mesh.vertices)
     if numbers.shape != (n_vertices,):
         raise FieldError(f"The field needs one value for each of the {n_vertices} vertices, not {numbers.shape}.")
-    if not np.isfinite(numbers[surface.mesh.triangles]).all():
-        raise FieldError("The field has values that are not finite numbers.")
     mesh = surface.mesh
-    used = np.unique(mesh.triangles)
-    numbers = numbers.copy()
-    numbers[used] = _even_field(numbers[used])
+    of_surface = numbers[mesh.used]
+    _check_numbers(of_surface)
+    numbers = np.zeros(n_vertices)
+    numbers[mesh.used] = _even_field(of_surface)
     net = Net(mesh.vertices, mesh.triangles, np.arange(len(mesh.triangles)), mesh.areas)
     return ScalarField(numbers, net, "user", True)
+
+
+def _check_numbers(values: Floats) -> None:
+    if not np.isfinite(values).all():
+        raise FieldError("The field has values that are not finite numbers.")
+    largest, spread = float(np.abs(values).max()), float(np.ptp(values))
+    if largest > LARGEST_NUMBER or 0 < spread < 1 / LARGEST_NUMBER:
+        raise FieldError(
+            f"The values of the field reach {largest:.0e} and differ by {spread:.0e}, too much or too little to be"
+            " computed with; scale them."
+        )
 
 
 def _even_field(values: Floats) -> Floats:

@@ -6,13 +6,17 @@ from scipy.sparse.csgraph import maximum_bipartite_matching
 from scipy.spatial import cKDTree
 
 from ..errors import FieldError
+from ..memory import told_if_full
 from ..surface.mesh import Bools, Floats, Ints
 from .diagram import PersistenceDiagram
 
 # The search for the bottleneck is narrowed to this fraction of its value before distances are listed.
 NARROW = 1e-3
+# Denormal numbers cannot be halved for ever.
+MOST_HALVINGS = 200
 
 
+@told_if_full
 def diagram_distance(first: PersistenceDiagram, second: PersistenceDiagram, metric: str = "hausdorff") -> float:
     """Return the distance of two separated diagrams in the maximum norm; the diagonal belongs to both.
 
@@ -67,7 +71,9 @@ def bottleneck_distance(first: Floats, second: Floats) -> float:
     low, high = hausdorff_distance(first, second), float(to_diagonal.max(initial=0.0))
     if _can_match(first, second, low):
         return low
-    while high - low > NARROW * high:
+    for _ in range(MOST_HALVINGS):
+        if high - low <= NARROW * high:
+            break
         middle = 0.5 * (low + high)
         low, high = (low, middle) if _can_match(first, second, middle) else (middle, high)
     near = _distances(first, second, high * (1 + NARROW))[2]

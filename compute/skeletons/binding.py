@@ -6,6 +6,8 @@ from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from ..analysis.analysis import Analysis
+from ..errors import FieldError
+from ..memory import require_memory, told_if_full
 from ..surface.mesh import Floats, Ints, TriangleMesh
 from ..surface.ties import ROUNDING
 from .embedding import Skeleton
@@ -19,8 +21,16 @@ MOST_BONES = 4
 LEAST_WEIGHT = 0.01
 # Triangles flatter than this fraction of the mean area count as if they had it.
 LEAST_AREA = 1e-4
+# Peak memory for each vertex, and for each of its weights (docs/method.md).
+BYTES_PER_VERTEX = 2500
+BYTES_PER_WEIGHT = 64
+TOO_LARGE = (
+    "Weights of {:,} bones for {:,} vertices take about {} of memory, and {} are free; decimate the mesh or close other"
+    " programs."
+)
 
 
+@told_if_full
 def binding_weights(analysis: Analysis, skeleton: Skeleton, *, softness: float = SOFTNESS) -> Floats:
     """Return the weight with which each bone moves each vertex.
 
@@ -57,6 +67,10 @@ def binding_weights(analysis: Analysis, skeleton: Skeleton, *, softness: float =
     >>> weights.shape, bool(np.allclose(weights.sum(axis=1), 1))
     ((91, 3), True)
     """
+    if not (np.isfinite(softness) and softness >= 0):
+        raise FieldError(f"The softness of weights is a finite number, zero or more, not {softness}.")
+    n_bones, n_vertices = len(skeleton.joints) - 1, len(analysis.mesh.vertices)
+    require_memory(n_vertices * (BYTES_PER_VERTEX + BYTES_PER_WEIGHT * n_bones), TOO_LARGE, n_bones, n_vertices)
     surface = analysis.surface.mesh
     used, triangles = np.unique(surface.triangles, return_inverse=True)
     mesh = TriangleMesh(surface.vertices[used], triangles.reshape(-1, 3))
@@ -117,6 +131,5 @@ def _place_of_input(analysis: Analysis, used: Ints) -> Ints:
     place = place[analysis.surface.vertex_of_input]
     loose = np.flatnonzero(place < 0)
     if len(loose):
-        finite = np.nan_to_num(vertices[loose])
-        place[loose] = cKDTree(vertices[used]).query(finite)[1]
+        place[loose] = cKDTree(vertices[used]).query(vertices[loose])[1]
     return place

@@ -7,13 +7,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..analysis.analysis import Analysis
-from ..surface.mesh import Floats, Ints
+from ..errors import LevelError
+from ..memory import require_memory, told_if_full
+from ..surface.mesh import Floats, Ints, checked_labels
 from .joint_tree import join_limbs, pulled_inside, without_short_bones
 from .layout import BoneLayout, layout_of, level_with_tips, with_layout
 from .limb_plan import plan_limbs
 from .limbs import lay_limb, trace_limb, with_equal_joints
 from .ownership import bones_of_vertices
 from .sliced_shape import slice_shape
+
+# Peak memory for each vertex of the net and of the input (docs/method.md).
+BYTES_PER_NODE = 1100
+BYTES_PER_VERTEX = 900
+TOO_LARGE = (
+    "Bones for {:,} vertices take about {} of memory, and {} are free; decimate the mesh or close other programs."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +76,7 @@ class Skeleton:
     layout: BoneLayout | None = None
 
 
+@told_if_full
 def skeleton(
     analysis: Analysis,
     *,
@@ -136,8 +146,11 @@ def skeleton(
     ([-1, 0, 0], [-1.0, 1.0])
     """
     analysis.require_one_shape()
-    if labels is None:
-        labels = _labels_of_level(analysis, level, mode)
+    n_vertices = len(analysis.mesh.vertices)
+    require_memory(BYTES_PER_NODE * len(analysis.net.positions) + BYTES_PER_VERTEX * n_vertices, TOO_LARGE, n_vertices)
+    if n_pieces < 1:
+        raise LevelError(f"A long limb is divided into at least 1 bone, not {n_pieces}.")
+    labels = _labels_of_level(analysis, level, mode) if labels is None else checked_labels(analysis.mesh, labels)
     if layout is not None:
         level = analysis.hierarchy.default_level if level is None else level
         level = level_with_tips(analysis, labels, layout.tips, level)

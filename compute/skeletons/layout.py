@@ -127,7 +127,7 @@ def level_with_tips(analysis: Analysis, labels: NDArray[np.int32], tips: Tips, l
     label_of_vertex = np.zeros(len(net.positions), dtype=np.int64)
     label = labels[analysis.surface.input_triangle[net.triangle_of_surface]]
     label_of_vertex[net.triangles.ravel()] = np.repeat(label, 3)
-    used = np.unique(net.triangles)
+    used = net.used
     always = [used[values[used].argmax()], used[values[used].argmin()]][: 1 + analysis.field.minima_are_features]
     rising = label_of_vertex[hierarchy.pairs[::-1][: hierarchy.n_levels - 1, 0]]
     wanted = np.array(sorted(tips - set(label_of_vertex[always].tolist())), dtype=np.int64)

@@ -12,7 +12,8 @@ from ..analysis.analysis import Analysis
 from ..analysis.readings import reeb_graph
 from ..errors import LevelError, MeshError
 from ..msc.reeb import ReebGraph
-from ..surface.mesh import Floats
+from ..surface.mesh import Floats, Ints, with_loose_inside
+from ..surface.ties import first_nearest
 from .interior import Interior
 from .slices import Slices, centres_at_rest, centres_in_pose, slice_arcs
 
@@ -45,10 +46,18 @@ class SlicedShape:
     triangle_centres: Floats
     centres: Floats
 
+    @property
+    def vertices(self) -> Ints:
+        """The vertices that are analyzed."""
+        return self.analysis.surface.mesh.used
+
     @cached_property
-    def vertex_tree(self) -> cKDTree:
-        """The vertices of the input in the first pose, to find the nearest to a place."""
-        return cKDTree(self.analysis.mesh.vertices)
+    def _vertex_tree(self) -> cKDTree:
+        return cKDTree(self.analysis.mesh.vertices[self.vertices])
+
+    def nearest_vertex(self, place: Floats) -> int:
+        """Return the vertex of the surface that is nearest to a place (3,) in the first pose."""
+        return int(self.vertices[first_nearest(self._vertex_tree, place[None])[0]])
 
 
 def slice_shape(
@@ -95,9 +104,10 @@ def slice_shape(
 
 def _checked_poses(analysis: Analysis, poses: Sequence[ArrayLike]) -> list[Floats]:
     """Return further poses as arrays, or name the first that has the wrong number of vertices."""
+    mesh = analysis.mesh
     arrays = [np.asarray(pose, dtype=np.float64) for pose in poses]
     for number, pose in enumerate(arrays, start=1):
-        if pose.shape != analysis.mesh.vertices.shape or not np.isfinite(pose).all():
-            n_vertices = len(analysis.mesh.vertices)
+        if pose.shape != mesh.vertices.shape or not np.isfinite(pose[mesh.used]).all():
+            n_vertices = len(mesh.vertices)
             raise MeshError(f"Pose {number} needs a finite place for each of the {n_vertices} vertices of the mesh.")
-    return arrays
+    return [with_loose_inside(pose, mesh.triangles) for pose in arrays]

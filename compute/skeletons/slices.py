@@ -15,6 +15,8 @@ MOST_SLICES = 48
 LEAST_TRIANGLES = 40
 # Of the mean rise of an arc's slices, at the least.
 LEAST_RISE = 0.05
+# Where a field is level, its gradients are this fraction of the steepest, and slices this thin in sizes of the shape.
+LEVEL = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +88,10 @@ def slice_arcs(analysis: Analysis, graph: ReebGraph, labels: NDArray[np.int32]) 
     n_slices = int(offset[-1])
     total = np.bincount(of_triangle, weight, n_slices)
     area = np.bincount(of_triangle, net.areas, n_slices)
-    girth = total / _rises(lowest, offset, values[graph.vertex[graph.arcs]])
+    rises = _rises(lowest, offset, values[graph.vertex[graph.arcs]], ROUNDING * analysis.field.value_range)
+    size = float(np.linalg.norm(np.ptp(net.positions[net.used], axis=0)))
+    # Nothing is wider than the shape, whatever a level field makes of it.
+    girth = np.clip(total / rises, LEVEL * size, np.pi * size)
     label = labels[analysis.surface.input_triangle[net.triangle_of_surface]]
     return Slices(
         offset=offset,
@@ -143,11 +148,11 @@ def _level_lengths(corners: Floats, values: Floats) -> Floats:
     opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     rise = np.linalg.norm(np.einsum("mi,mij->mj", values, opposite), axis=1) / 2
     # A triangle on which the field is level still has a place.
-    return np.maximum(rise, np.finfo(float).tiny)
+    return np.maximum(rise, LEVEL * (rise.max() or 1.0))
 
 
-def _rises(lowest: Floats, offset: Ints, ends: Floats) -> Floats:
-    """Return (S,) the rise of the field through each slice, given the ends (A, 2) of the arcs."""
+def _rises(lowest: Floats, offset: Ints, ends: Floats, least: float) -> Floats:
+    """Return (S,) the rise of the field through each slice, given the ends (A, 2) of the arcs, at least the last."""
     count = np.diff(offset)
     filled = np.flatnonzero(count)
     bottom = lowest.copy()
@@ -156,7 +161,7 @@ def _rises(lowest: Floats, offset: Ints, ends: Floats) -> Floats:
     top[offset[filled + 1] - 1] = ends[filled, 1]
     # Triangles across the level of a saddle reach a little below their arc.
     even = np.repeat((ends[:, 1] - ends[:, 0]) / np.maximum(count, 1), count)
-    return np.maximum(top - bottom, np.maximum(LEAST_RISE * even, np.finfo(float).tiny))
+    return np.maximum(top - bottom, np.maximum(LEAST_RISE * even, max(least, np.finfo(float).tiny)))
 
 
 def _main_labels(of_triangle: Ints, label: NDArray[np.int32], area: Floats) -> Ints:

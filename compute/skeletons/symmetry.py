@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..analysis.analysis import Analysis
+from ..memory import told_if_full
 from ..progress import Progress, silent
 from ..registration.dense.point_map import point_map
 from ..registration.eigenfunctions.matching import match
 from ..registration.eigenfunctions.spectral_shape import spectral_shape
-from ..surface.mesh import Floats, Ints
+from ..surface.mesh import Floats, Ints, checked_labels
 from ..surface.ties import first_largest
 from .embedding import Skeleton
 
@@ -45,6 +46,7 @@ class Reflection:
     input_triangle: Ints
 
 
+@told_if_full
 def mirror_parts(analysis: Analysis, labels: NDArray[np.int32], *, progress: Progress = silent) -> Ints | None:
     """Return (P,) for each label the part that is its mirror image, itself for what lies in the middle.
 
@@ -86,6 +88,7 @@ def mirror_parts(analysis: Analysis, labels: NDArray[np.int32], *, progress: Pro
     >>> mirror_parts(analysis, sides).tolist()
     [1, 0]
     """
+    labels = checked_labels(analysis.mesh, labels)
     progress(0.0, "Looking for symmetry")
     reflection = _reflected(analysis)
     if reflection is None:

@@ -8,7 +8,7 @@ import numpy as np
 from ..analysis.analysis import Analysis
 from ..msc.reeb import ReebGraph
 from ..surface.mesh import Floats
-from ..surface.ties import evened, first_largest, first_nearest
+from ..surface.ties import evened, first_largest
 from .branching import Chain
 from .interior import Interior
 from .layout import BoneLayout
@@ -27,7 +27,8 @@ def tips_of_parts(analysis: Analysis, graph: ReebGraph, slices: Slices, layout: 
     is_upper[graph.arcs[:, 1]] = True
     leaves = np.flatnonzero((graph.degree == 1) & (is_upper | analysis.field.minima_are_features))
     arc_of = {node: arc for arc, ends in enumerate(graph.arcs.tolist()) for node in ends}
-    height = evened(np.abs(analysis.field.values[graph.vertex] - np.median(analysis.field.values)))
+    values = analysis.field.values
+    height = evened(np.abs(values[graph.vertex] - np.median(values[analysis.net.used])))
     ranked = sorted(leaves.tolist(), key=lambda leaf: -height[leaf])
     tips: dict[int, int] = {}
     for leaf in ranked:
@@ -62,7 +63,7 @@ def tip_of_chain(chain: Chain, shape: SlicedShape) -> Tip:
         place, last = shape.analysis.net.positions[shape.graph.vertex[chain.end]], int(chain.slices[-1])
     else:
         place, last = shape.triangle_centres[crown], widest_slice(chain, shape.slices)
-    vertex = first_nearest(shape.vertex_tree, place[None])[0]
+    vertex = shape.nearest_vertex(place)
     return Tip(reaching(shape.centres[:, last], shape.poses[:, vertex], shape.interior), last)
 
 

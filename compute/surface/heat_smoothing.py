@@ -7,6 +7,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg, splu
 
 from ..errors import MeshError
+from ..memory import told_if_full
 from .mesh import Bools, Floats, Ints, TriangleMesh
 
 # Heat that has spread for a time t from one side of a straight line falls from 90 % to 10 % over 2 ln 5 sqrt(t).
@@ -50,6 +51,7 @@ def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
     return np.stack(columns, axis=1)
 
 
+@told_if_full
 def softened_labels(mesh: TriangleMesh, labels: NDArray[np.int32], width: float) -> tuple[Ints, Floats]:
     """Return the share of each label at each vertex when the borders are softened.
 

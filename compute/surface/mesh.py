@@ -17,6 +17,10 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Ints32 = NDArray[np.int32]
 
+# Larger coordinates and values have powers that are no numbers any more, and so have areas below the inverse square.
+LARGEST_NUMBER = 1e60
+SMALLEST_AREA = LARGEST_NUMBER**-2
+
 
 @dataclass(frozen=True, eq=False)
 class Edges:
@@ -57,14 +61,16 @@ class TriangleMesh:
     Parameters
     ----------
     vertices : (V, 3) float
-        Positions in any unit of length.
+        Positions in any unit of length. Those that no triangle uses may be anything, NaN too: they are kept within the
+        box around the others, so that they never matter.
     triangles : (T, 3) int
         Vertex indices, counter-clockwise seen from outside.
 
     Raises
     ------
     MeshError
-        If there are no triangles, an index has no vertex, a used coordinate is not finite or the area is zero.
+        If there are no triangles, an index has no vertex, a used coordinate is not finite, the area is zero or the
+        mesh is so large or so small that its areas are no numbers any more.
 
     Examples
     --------
@@ -78,9 +84,16 @@ class TriangleMesh:
     triangles: Ints
 
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
-        object.__setattr__(self, "vertices", _as_rows(vertices, np.float64, "vertices"))
-        object.__setattr__(self, "triangles", _as_rows(triangles, np.int64, "triangles"))
-        _check(self)
+        places, corners = _as_rows(vertices, np.float64, "vertices"), _as_rows(triangles, np.int64, "triangles")
+        _check_corners(corners, len(places))
+        object.__setattr__(self, "vertices", with_loose_inside(places, corners))
+        object.__setattr__(self, "triangles", corners)
+        _check_extent(self)
+
+    @cached_property
+    def used(self) -> Ints:
+        """(U,) the vertices of the triangles, rising."""
+        return np.flatnonzero(_is_used(self.triangles, len(self.vertices)))
 
     @cached_property
     def areas(self) -> Floats:
@@ -162,16 +175,65 @@ def _as_rows(values: ArrayLike, dtype: type, name: str) -> NDArray[Any]:
     return rows
 
 
-def _check(mesh: TriangleMesh) -> None:
-    if len(mesh.triangles) == 0:
-        raise MeshError("The mesh has no faces; there is nothing to analyze.")
-    if mesh.triangles.min() < 0 or mesh.triangles.max() >= len(mesh.vertices):
-        raise MeshError("A triangle refers to a vertex that does not exist.")
-    used = mesh.vertices[mesh.triangles]
+def with_loose_inside(places: Floats, triangles: Ints) -> Floats:
+    """Return places (V, 3), those that no triangle uses moved into the box around the others.
+
+    So whatever is measured over all vertices is that of the surface, and none is nowhere or far away.
+
+    Raises
+    ------
+    MeshError
+        If a place that is used is not finite.
+    """
+    is_used = _is_used(triangles, len(places))
+    used = places if is_used.all() else places[is_used]
     if not np.isfinite(used).all():
         raise MeshError("A vertex has a coordinate that is not a finite number; repair or delete it.")
-    extent = np.ptp(used.reshape(-1, 3), axis=0).max()
-    if not np.isfinite(extent) or not mesh.areas.sum() > 0:
+    if is_used.all():
+        return places
+    low, high = used.min(axis=0), used.max(axis=0)
+    inside = places.copy()
+    loose = places[~is_used]
+    inside[~is_used] = np.clip(np.where(np.isnan(loose), low, loose), low, high)
+    return inside
+
+
+def checked_labels(mesh: TriangleMesh, labels: ArrayLike) -> NDArray[np.int32]:
+    """Return the parts of the triangles as whole numbers.
+
+    Raises
+    ------
+    MeshError
+        If there is not one for each triangle, zero or more.
+    """
+    numbers = np.asarray(labels)
+    n_triangles = len(mesh.triangles)
+    if numbers.shape != (n_triangles,) or numbers.dtype.kind not in "iu" or numbers.min() < 0:
+        raise MeshError(f"The parts need a whole number, zero or more, for each of the {n_triangles} triangles.")
+    return numbers.astype(np.int32)
+
+
+def _is_used(triangles: Ints, n_vertices: int) -> Bools:
+    is_used = np.zeros(n_vertices, dtype=bool)
+    is_used[triangles] = True
+    return is_used
+
+
+def _check_corners(triangles: Ints, n_vertices: int) -> None:
+    if len(triangles) == 0:
+        raise MeshError("The mesh has no faces; there is nothing to analyze.")
+    if triangles.min() < 0 or triangles.max() >= n_vertices:
+        raise MeshError("A triangle refers to a vertex that does not exist.")
+
+
+def _check_extent(mesh: TriangleMesh) -> None:
+    # Within the box, so that loose vertices do not change it.
+    largest = float(np.abs(mesh.vertices).max())
+    if largest > LARGEST_NUMBER:
+        raise MeshError(
+            f"The mesh has coordinates of {largest:.0e}, too large to be computed with; scale the mesh down."
+        )
+    if not mesh.areas.sum() > SMALLEST_AREA:
         raise MeshError("The faces of the mesh have no area; check the scale of the object and merged vertices.")
 
 

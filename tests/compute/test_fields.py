@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from compute import FieldError, analyze, solve_eigenbasis
+from compute import FieldError, analyze, skeleton, solve_eigenbasis
 from compute.fields.scalar_field import diffusion_field, eigenfunction_field, refined_net
 from tests.shapes import icosphere, rectangle, star
 
@@ -61,3 +61,18 @@ def test_the_users_own_field_is_taken_on_the_mesh_itself():
 def test_refuses_a_field_that_is_none(field, sentence):
     with pytest.raises(FieldError, match=sentence):
         analyze(star(), field=field)
+
+
+@pytest.mark.parametrize("scale", [1e300, 1e-310])
+def test_values_without_powers_are_refused(scale):
+    mesh = star(n_arms=3, n_subdivisions=1)
+    with pytest.raises(FieldError, match="too much or too little to be computed with; scale them"):
+        analyze(mesh, field=scale * mesh.vertices[:, 0])
+
+
+@pytest.mark.parametrize("scale", [1e55, 1e-55])
+def test_the_unit_of_a_field_does_not_matter(scale):
+    mesh = star(n_arms=3, n_subdivisions=2)
+    heights = np.linalg.norm(mesh.vertices, axis=1)
+    small, usual = (skeleton(analyze(mesh, field=unit * heights)) for unit in (scale, 1.0))
+    np.testing.assert_allclose(small.joints, usual.joints, atol=1e-6)

@@ -12,10 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
+from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import first_largest
 from ..eigenfunctions.matching import Matching, match_surfaces
+from ..eigenfunctions.pair_memory import BYTES_OF_MAP, require_pair
 from ..eigenfunctions.spectral_shape import spectral_shape
 from .by_faces import map_by_faces
 from .by_number import map_by_number
@@ -99,6 +101,7 @@ class Correspondence:
         return SurfacePoints(self.triangles, self.barycentric)
 
 
+@told_if_full
 def correspond(
     source: Analysis, target: Analysis, *, matching: Matching | None = None, progress: Progress | None = None
 ) -> Correspondence:
@@ -136,6 +139,7 @@ def correspond(
     >>> correspond(source, target).found_by
     'number'
     """
+    require_pair(source.surface, target.surface, BYTES_OF_MAP)
     progress = rising(progress or silent)
     progress(0.0, "Computing functions")
     shapes = spectral_shape(source.matching_basis), spectral_shape(target.matching_basis)
@@ -145,7 +149,7 @@ def correspond(
     source_shape = shapes[0].mirrored() if matching.mirrored else shapes[0]
     pair = ShapePair(source=source, target=target, source_shape=source_shape, target_shape=shapes[1], matching=matching)
     if matching.same_topology:
-        return _correspondence(pair, map_by_number(target.mesh), BY_NUMBER)
+        return _correspondence(pair, map_by_number(source, target), BY_NUMBER)
     _check_matching(pair)
     progress(0.5, "Comparing the faces")
     if (image := map_by_faces(pair)) is not None:

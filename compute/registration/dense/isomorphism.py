@@ -114,13 +114,15 @@ def _grown(source: _Sides, target: _Sides, seed: Ints, start: Ints) -> Ints | No
 
 
 def _first_time(reached: Bools, target: _Sides, front: Ints) -> Ints:
-    """Return the rows of the sides that were not passed before, each once, and mark them."""
-    place = np.searchsorted(target.keys, front[:, 0] * target.n_vertices + front[:, 1])
-    place = np.minimum(place, len(target.keys) - 1)
-    place, first = np.unique(place, return_index=True)
+    """Return the rows of the sides that were not passed before, each once, and mark them; all beyond the border."""
+    wanted = front[:, 0] * target.n_vertices + front[:, 1]
+    place = np.minimum(np.searchsorted(target.keys, wanted), len(target.keys) - 1)
+    has_triangle = target.keys[place] == wanted
+    inside = np.flatnonzero(has_triangle)
+    place, first = np.unique(place[inside], return_index=True)
     fresh = ~reached[place]
     reached[place[fresh]] = True
-    return first[fresh]
+    return np.concatenate([np.flatnonzero(~has_triangle), inside[first[fresh]]])
 
 
 def _is_complete(image: Ints, source: Ints, target: Ints) -> bool:

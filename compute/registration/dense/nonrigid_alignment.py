@@ -167,7 +167,7 @@ def _disagreements(graph: DeformationGraph, motion: Motion, weights: Round) -> t
     arms = np.einsum("nij,nj->ni", motion.rotations[start], between)
     gaps = arms + motion.shifts[start] - between - motion.shifts[stop]
     share = np.linalg.norm(gaps, axis=1) / np.maximum(np.linalg.norm(between, axis=1), np.finfo(float).tiny)
-    factor = np.sqrt(weights.stiffness / len(start) * np.maximum(1 / (1 + (share / weights.bend) ** 2), 1e-2))
+    factor = np.sqrt(weights.stiffness / max(len(start), 1) * np.maximum(1 / (1 + (share / weights.bend) ** 2), 1e-2))
     blocks = np.zeros((3, len(start), 2, 6))
     for axis, direction in enumerate(np.eye(3)):
         blocks[axis, :, 0, :3] = np.cross(arms, direction)

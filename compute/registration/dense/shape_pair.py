@@ -107,8 +107,7 @@ def nearest_known(vertices: Floats, is_known: Bools) -> Ints:
     lone = np.flatnonzero(~is_known)
     if len(lone):
         known = np.flatnonzero(is_known)
-        # Vertices without faces may lie nowhere.
-        nearest[lone] = known[cKDTree(vertices[known]).query(np.nan_to_num(vertices[lone]))[1]]
+        nearest[lone] = known[cKDTree(vertices[known]).query(vertices[lone])[1]]
     return nearest
 
 

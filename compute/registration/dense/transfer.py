@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...memory import told_if_full
 from ...surface.heat_smoothing import harmonic_fill
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh
 from .correspondence import Correspondence
@@ -19,11 +20,13 @@ MOST_ISLANDS = 400
 SAME_VALUE = 1e-5
 
 
+@told_if_full
 def fill_unsure(correspondence: Correspondence, target: TriangleMesh, values: Floats) -> Floats:
     """Return values (Vt, n) with those of unsure vertices filled in smoothly from the sure ones around them."""
     return harmonic_fill(target, values, correspondence.is_sure)
 
 
+@told_if_full
 def transfer_displacements(
     correspondence: Correspondence, source: TriangleMesh, target: TriangleMesh, displacements: Floats
 ) -> Floats:
@@ -104,6 +107,7 @@ def _continuous_pairs(triangles: Ints, values: Floats) -> Ints:
     return np.stack([first[same], second[same]], axis=1) // 3
 
 
+@told_if_full
 def transfer_corners(
     correspondence: Correspondence,
     source: TriangleMesh,

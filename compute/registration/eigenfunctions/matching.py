@@ -8,11 +8,13 @@ import numpy as np
 
 from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
+from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
+from .pair_memory import require_pair
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded
 
@@ -79,6 +81,7 @@ class Matching:
         return rounded(self.map)[1]
 
 
+@told_if_full
 def match(
     source: Analysis,
     target: Analysis,
@@ -125,12 +128,14 @@ def match(
     >>> matching.same_topology, matching.confidence
     (True, 1.0)
     """
+    require_pair(source.surface, target.surface)
     progress = rising(progress or silent)
     shapes = matching_shape(source, section(progress, 0, 0.3)), matching_shape(target, section(progress, 0.3, 0.6))
     rest = section(progress, 0.6, 1)
     return match_surfaces(source.surface, target.surface, *shapes, flips=flips, mirrored=mirrored, progress=rest)
 
 
+@told_if_full
 def matching_shape(analysis: Analysis, progress: Progress = silent) -> SpectralShape:
     """Return a shape ready to be matched, with functions that are computed now if they were not before."""
     shape = spectral_shape(analysis.find_matching_basis(section(progress, 0, 0.8)))

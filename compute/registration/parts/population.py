@@ -10,11 +10,13 @@ import numpy as np
 from ...analysis.analysis import Analysis
 from ...choices import FEATURES
 from ...errors import RegistrationError
+from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.point_map import point_map
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
+from ..eigenfunctions.pair_memory import require_pair
 from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
 from .transferred_labels import Divisible, FaceLabels, divisible, transfer_labels
 
@@ -54,6 +56,7 @@ class Registered:
     matching: Matching
 
 
+@told_if_full
 def register(
     analyses: Sequence[Analysis],
     *,
@@ -103,6 +106,8 @@ def register(
     """
     if not 0 <= reference < len(analyses):
         raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
+    for analysis in analyses:
+        require_pair(analyses[reference].surface, analysis.surface)
     progress = rising(progress or silent)
     progress(0.0, "Preparing the reference")
     reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
@@ -114,6 +119,7 @@ def register(
     return with_disjoint_labels(segmentations, reference)
 
 
+@told_if_full
 def prepare_reference(analysis: Analysis, segmentation: Segmentation) -> Reference:
     """Return a shape with its parts in the form that others are registered to."""
     shape = divisible(analysis, matching_shape(analysis))
@@ -133,6 +139,7 @@ def register_one(reference: Reference, target: Analysis, progress: Progress = si
     return Registered(Segmentation(labels.faces, labels.parts, labels.level), matching)
 
 
+@told_if_full
 def match_divisible(
     reference: Reference,
     target: Divisible,
@@ -147,6 +154,7 @@ def match_divisible(
     return match_surfaces(*surfaces, *shapes, flips=flips, mirrored=mirrored, progress=progress)
 
 
+@told_if_full
 def label_matched(
     reference: Reference, target: Divisible, matching: Matching, first_free: int, progress: Progress = silent
 ) -> FaceLabels:
@@ -164,7 +172,11 @@ def label_matched(
     progress(0.8, "Carrying the parts over")
     cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
-    same_faces = matching.same_topology and np.array_equal(reference.shape.face, target.face)
+    same_faces = (
+        matching.same_topology
+        and np.array_equal(reference.shape.face, target.face)
+        and len(reference.shape.graph.stands_for) == len(target.graph.stands_for)
+    )
     return transfer_labels(reference.parts.given, target, None if same_faces else to_reference, cuts, level)
 
 

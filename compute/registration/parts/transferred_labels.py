@@ -10,7 +10,7 @@ from ...analysis.analysis import Analysis
 from ...segmentation.faces.branches import connected_branches, repaired_labels
 from ...segmentation.faces.face_graph import FaceGraph, face_graph
 from ...segmentation.faces.part_tree import PartTree
-from ...segmentation.parts.part_labels import BODY, BranchLabels, Parts, label_behind
+from ...segmentation.parts.part_labels import BODY, BranchLabels, Parts, label_behind, listed_parents
 from ...surface.cleaning import Surface
 from ...surface.heat_smoothing import smoothed
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, sum_by
@@ -177,15 +177,13 @@ def _transferred(given: GivenParts, target: Divisible, point_map: Ints, present:
 
 def _heirs(given: GivenParts, present: Ints) -> Floats:
     """Return (1 + P, 1 + P) the heirs of body and parts: themselves, or for absent ones the part they grow out of."""
-    ids = np.append(BODY, given.id).tolist()
-    parent = dict(zip(given.id.tolist(), given.parent.tolist(), strict=True))
-    stays = {BODY, *present.tolist()}
-    heirs = np.zeros((len(ids), len(ids)))
-    for row, part in enumerate(ids):
-        while part not in stays or part not in ids:
-            part = parent.get(part, BODY)
-        heirs[row, ids.index(part)] = 1
-    return heirs
+    ids = np.append(BODY, given.id)
+    stays = np.intersect1d(ids, np.append(BODY, present))
+    parent = np.zeros(1 + given.highest, dtype=np.int64)
+    parent[given.id] = np.where(np.isin(given.parent, ids), given.parent, BODY)
+    heir = listed_parents(parent, stays)
+    heir[stays] = stays
+    return (heir[ids][:, None] == ids).astype(np.float64)
 
 
 def _connected(labels: Ints, graph: FaceGraph) -> Ints:
@@ -207,19 +205,9 @@ def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, targ
     ids = np.flatnonzero(count)
     return Parts(
         id=ids,
-        parent=_present_parents(parent, count > 0)[ids],
+        parent=listed_parents(parent, ids)[ids],
         extremum=extremum[ids],
         saddle=saddle[ids],
         area=area[ids],
         n_triangles=count[ids],
     )
-
-
-def _present_parents(parent: Ints, is_present: Bools) -> Ints:
-    """Return for each part the nearest one around it that has faces."""
-    for _ in parent:
-        absent = (parent != BODY) & ~is_present[parent]
-        if not absent.any():
-            break
-        parent = np.where(absent, parent[parent], parent)
-    return parent

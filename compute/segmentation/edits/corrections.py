@@ -143,10 +143,18 @@ def _merge(labelling: Labelling, branches: Branches, item: Correction, _: Ints |
         return None
     of_branch = np.where(labelling.of_branch == part, into, labelling.of_branch)
     parent = labelling.parent.copy()
-    if parent[into] == part:
+    if part in _around(parent, into):
         parent[into] = parent[part]
     parent[(parent == part) & (np.arange(len(parent)) != into)] = into
     return replace(labelling, of_branch=of_branch, parent=parent)
+
+
+def _around(parent: Ints, part: int) -> list[int]:
+    """Return the parts that a part grows out of, from the next one outward."""
+    around: list[int] = []
+    while (part := int(parent[part])) not in around:
+        around.append(part)
+    return around
 
 
 def _split(labelling: Labelling, branches: Branches, item: Correction, side: Ints) -> Labelling | None:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...fem.eigenbasis import Eigenbasis
 from ...fields.scalar_field import diffusion_field
+from ...memory import told_if_full
 from ...msc.links import Links, links_of
 from ...msc.morse_smale import FieldTopology
 from ...surface.mesh import Floats, Ints
@@ -38,6 +39,7 @@ class FunctionHint:
     n_protrusions: int
 
 
+@told_if_full
 def judge_eigenfunctions(basis: Eigenbasis, n_functions: int = JUDGED_FUNCTIONS) -> tuple[FunctionHint, ...]:
     """Return how the first eigenfunctions divide the shape, the one that suits best first.
 

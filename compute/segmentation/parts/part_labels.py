@@ -27,7 +27,8 @@ class Parts:
     id : (P,) int64
         Label of the part; 0 is the body. A part has the same id at every level.
     parent : (P,) int64
-        Id of the part it grows out of; 0 for the body.
+        Id of the part in the table that it grows out of; 0 for the body, and for what grows out of the body or of
+        nothing.
     extremum, saddle : (P,) int64
         Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body.
     area : (P,) float64
@@ -230,9 +231,27 @@ def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Part
     extremum, saddle = (np.pad(column, (0, n_new), constant_values=-1) for column in (origins.extremum, origins.saddle))
     return Parts(
         id=ids,
-        parent=labelling.parent[ids],
+        parent=listed_parents(labelling.parent, ids)[ids],
         extremum=extremum[ids],
         saddle=saddle[ids],
         area=area[ids],
         n_triangles=n_faces[ids],
     )
+
+
+def listed_parents(parent: Ints, ids: Ints) -> Ints:
+    """Return for each number of a part the nearest of the listed parts around it, the body where there is none.
+
+    Parameters
+    ----------
+    parent : (n,) int64
+        By number of the part, the part it grows out of, whether that has faces or not.
+    ids : (P,) int64
+        Parts that have faces.
+    """
+    is_listed = np.zeros(len(parent), dtype=bool)
+    is_listed[ids] = True
+    # Each round halves the way; what goes round in a circle grows out of nothing.
+    for _ in range(len(parent).bit_length()):
+        parent = np.where(is_listed[parent], parent, parent[parent])
+    return np.where(is_listed[parent], parent, BODY)

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from ...fields.scalar_field import Net
 from ...surface.mesh import Ints
 from ..borders.level_set_borders import Polyline
-from .part_labels import BODY, Parts, Segmentation
+from .part_labels import BODY, Parts, Segmentation, listed_parents
 
 
 def inserted(
@@ -46,6 +46,9 @@ def inserted(
     joined["area"][is_divided] -= finer.parts.area[added].sum()
     joined["n_triangles"][is_divided] -= finer.parts.n_triangles[added].sum()
     left = joined["n_triangles"] > 0
+    parent = np.zeros(1 + int(joined["id"].max()), dtype=np.int64)
+    parent[joined["id"]] = joined["parent"]
+    joined["parent"] = listed_parents(parent, joined["id"][left])[joined["id"]]
     parts = Parts(**{name: column[left] for name, column in joined.items()})
     return Segmentation(
         labels=labels,
@@ -67,5 +70,4 @@ def _renumbered(labels: Ints, part: int, first: int) -> Ints:
 
 
 def _nearest(finer_net: Net, net: Net, vertices: Ints) -> Ints:
-    used = np.unique(net.triangles)
-    return used[cKDTree(net.positions[used]).query(finer_net.positions[vertices])[1]]
+    return net.used[cKDTree(net.positions[net.used]).query(finer_net.positions[vertices])[1]]

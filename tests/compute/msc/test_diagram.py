@@ -117,3 +117,8 @@ def test_unknown_metric_is_refused():
     diagram = diagram_of(SURFACE, SURFACE.vertices[:, 0])
     with pytest.raises(FieldError, match="wasserstein"):
         diagram_distance(diagram, diagram, "wasserstein")
+
+
+def test_the_bottleneck_of_denormal_points_is_found():
+    tiny = np.array([[0.0, 5e-324], [0.0, 2e-323]])
+    assert bottleneck_distance(tiny, np.zeros((0, 2))) <= 2e-323

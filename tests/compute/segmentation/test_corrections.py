@@ -24,7 +24,7 @@ from compute.segmentation.edits.redrawing import redraw, undivided
 from compute.segmentation.edits.relief import relief_of
 from compute.segmentation.faces.branches import Branches
 from compute.segmentation.faces.face_graph import face_graph
-from compute.segmentation.parts.part_labels import label_branches
+from compute.segmentation.parts.part_labels import label_branches, listed_parents
 from compute.surface.mesh import TriangleMesh
 from tests.compute.test_analysis import n_pieces
 from tests.shapes import star
@@ -57,6 +57,19 @@ def test_a_parent_that_joins_its_child_leaves_it_its_own_parent():
     labels, parent, _ = correct([0, 1, 2], [0, 0, 1], [Correction(MERGE, 1, other=2)])
     assert labels == [0, 2, 2]
     assert parent[2] == 0
+
+
+def test_a_part_that_joins_what_grows_out_of_its_child_goes_round_in_no_ring():
+    labels, parent, _ = correct([0, 2, 1, 3], [0, 0, 1, 2], [Correction(MERGE, 1, other=3)])
+    assert labels == [0, 2, 3, 3]
+    assert (parent[3], parent[2]) == (0, 3)
+
+
+def test_parents_without_faces_are_passed_over():
+    parent = np.array([0, 0, 1, 2, 3, 6, 5])
+    assert listed_parents(parent, np.array([0, 1, 4, 6]))[[1, 4]].tolist() == [0, 1]
+    # What goes round in a ring grows out of nothing.
+    assert listed_parents(parent, np.array([4]))[5] == 0
 
 
 def test_parts_that_do_not_touch_are_not_merged():

@@ -52,3 +52,13 @@ def test_centres_move_with_the_vertices(analysis):
     matrix = np.array([[2, 0.3, 0], [0, 1, 0.1], [0.5, 0, 1]])
     moved = centres_in_pose(analysis, analysis.mesh.vertices @ matrix.T + [1, 2, 3])
     np.testing.assert_allclose(moved, centres_at_rest(analysis) @ matrix.T + [1, 2, 3], atol=1e-9)
+
+
+def test_slices_of_a_level_field_are_no_wider_than_the_shape(analysis):
+    mesh = analysis.mesh
+    # The lower half is level.
+    stepped = analyze(mesh, field=np.maximum(mesh.vertices[:, 2], 0.0))
+    labels = (mesh.vertices[mesh.triangles].mean(axis=1)[:, 2] > 1).astype(np.int32)
+    radius = slice_arcs(stepped, reeb_graph(stepped), labels).radius
+    assert radius.max() <= np.linalg.norm(np.ptp(mesh.vertices, axis=0)) / 2
+    assert radius.min() > 0

@@ -55,3 +55,10 @@ def test_refuses_what_is_no_surface(vertices, triangles, sentence):
 def test_an_unused_vertex_may_be_anywhere():
     vertices = np.vstack([tetrahedron().vertices, [[np.nan, np.inf, 0]]])
     assert TriangleMesh(vertices, tetrahedron().triangles).areas.sum() == pytest.approx(np.sqrt(3))
+
+
+def test_a_mesh_whose_areas_would_be_no_numbers_is_refused():
+    with pytest.raises(MeshError, match="too large to be computed with"):
+        TriangleMesh(1e200 * icosphere(0).vertices, icosphere(0).triangles)
+    with pytest.raises(MeshError, match="have no area"):
+        TriangleMesh(1e-200 * icosphere(0).vertices, icosphere(0).triangles)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from compute import TriangleMesh, correspond, match
+from compute import TriangleMesh, correspond, match, register
 from compute.errors import RegistrationError
 from tests.compute.registration.shapes import moved, quick, shuffled
 from tests.shapes import icosphere, joined, tetrahedron
@@ -91,3 +91,18 @@ def test_a_matching_of_other_shapes_is_refused(ball, finer):
     tiny = quick(tetrahedron())
     with pytest.raises(RegistrationError, match="other shapes"):
         correspond(ball, tiny, matching=match(ball, finer))
+
+
+def test_repeated_faces_do_not_shift_the_numbers_of_the_others(ball):
+    again = TriangleMesh(ball.mesh.vertices, np.vstack([ball.mesh.triangles[:1], ball.mesh.triangles]))
+    for source, target in ((quick(again), ball), (ball, quick(again))):
+        found = correspond(source, target)
+        assert found.found_by == "number"
+        np.testing.assert_allclose(found.transfer(source.mesh.vertices), target.mesh.vertices, atol=1e-12)
+        images = source.mesh.triangles[found.triangle_of_triangle]
+        np.testing.assert_array_equal(np.sort(images), np.sort(target.mesh.triangles))
+
+
+def test_registered_shapes_with_other_repeated_faces_have_a_label_for_each(ball):
+    again = quick(TriangleMesh(ball.mesh.vertices, np.vstack([ball.mesh.triangles, ball.mesh.triangles[[5, 7]]])))
+    assert [len(result.labels) for result in register([ball, again])] == [320, 322]

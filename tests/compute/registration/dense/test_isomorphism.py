@@ -46,3 +46,14 @@ def test_one_of_two_loose_parts_is_not_enough():
     both = joined(icosphere(1), torus())
     n = len(both.vertices)
     assert isomorphism(both.triangles, both.triangles, n, n, np.arange(n)) is None
+
+
+def test_a_strip_with_an_end_is_followed_to_its_end():
+    for n_long in range(2, 9):
+        mesh = rectangle(n_long, 1)
+        other, order = shuffled(mesh, seed=n_long)
+        for seed in range(len(other.triangles)):
+            guess = np.zeros(len(order), dtype=np.int64)
+            guess[other.triangles[seed]] = order[other.triangles[seed]]
+            found = isomorphism(mesh.triangles, other.triangles, len(order), len(order), guess)
+            np.testing.assert_array_equal(found, order)
