@@ -29,7 +29,7 @@ from ..segmentation.borders.level_set_borders import (
 from ..segmentation.faces.arc_areas import arc_areas
 from ..segmentation.faces.branches import build_branches
 from ..segmentation.faces.face_graph import face_graph
-from ..segmentation.faces.part_tree import PartTree
+from ..segmentation.faces.part_tree import BYTES_PER_NODE, TOO_MANY_FACES, PartTree
 from ..segmentation.hierarchy.arc_measures import ArcMeasures
 from ..segmentation.hierarchy.levels import Hierarchy
 from ..segmentation.hierarchy.measured_hierarchy import measured_hierarchy
@@ -41,13 +41,7 @@ from ..surface.mesh import Ints, TriangleMesh
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.
 WITHIN_THRESHOLD = 0.004
-# And has at least this many faces.
 LEAST_FACES_WITHIN = 8
-# Peak memory of dividing the faces and of tracing their borders, for each vertex of the net (docs/method.md).
-BYTES_PER_NODE = 400
-TOO_MANY_FACES = (
-    "Dividing {:,} faces takes about {} of memory, and {} are free; decimate the mesh or close other programs."
-)
 APART = (
     "Each loose part was analyzed by itself, so there is no one shape to be matched or to get bones; analyze the mesh"
     " with its loose parts bridged, or the largest alone."
@@ -256,7 +250,6 @@ class Analysis:
         branches = build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
         return PartTree(self.hierarchy, self.measures, heights, branches)
 
-    @told_if_full
     def profile(self, edges: Ints | None = None) -> EdgeProfile:
         """Return the field along edges of the input.
 

@@ -14,6 +14,12 @@ from ..hierarchy.levels import Hierarchy
 from ..hierarchy.nesting import nested_cuts, numbered
 from .branches import Branches
 
+# Peak memory of dividing the faces and of tracing their borders, for each vertex of the net (docs/method.md).
+BYTES_PER_NODE = 400
+TOO_MANY_FACES = (
+    "Dividing {:,} faces takes about {} of memory, and {} are free; decimate the mesh or close other programs."
+)
+
 
 @dataclass(frozen=True, eq=False)
 class PartTree:
