@@ -16,6 +16,7 @@ from pathlib import Path
 
 from .atomic_write import remove_stale
 from .child_process import GRACE, ChildProcess, own_command
+from .interrupts import interrupt_held
 from .jobs import Job
 from .process_limits import SUPERVISED, memory_share
 from .process_verdict import ProcessEnd, too_slow
@@ -115,7 +116,8 @@ class ProcessPool:
         while self._waiting and len(self._workers) < self.n_processes:
             unit = self._waiting.popleft()
             try:
-                self._workers.append(_Worker(self._start(unit), unit))
+                with interrupt_held():
+                    self._workers.append(_Worker(self._start(unit), unit))
             except OSError as error:
                 for job in unit.jobs:
                     yield failed_report(job, f"no process could be started: {error.strerror}: {error.filename}.")

@@ -9,6 +9,7 @@ from ..operators.messages.user_errors import Refusal
 from . import batch
 from .cluster import cluster_pool
 from .formats import name_of_divided, name_of_transferred
+from .interrupts import interruptible
 from .jobs import Job, jobs_of_files, refused_jobs
 from .process_limits import end_with_parent, is_supervised, memory_limited
 from .process_pool import local_pool, units_of
@@ -27,7 +28,8 @@ def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
         end_with_parent()
     do = _run_batch if options.command == "batch" else _run_files
     try:
-        return do(options, out, err)
+        with interruptible():
+            return do(options, out, err)
     except Refusal as refusal:
         err.write(f"{refusal}\n")
     except OSError as error:

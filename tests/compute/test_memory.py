@@ -43,6 +43,10 @@ def limits(system, group, **values):
         system(f"sys/{group}/memory.{name}", f"{value}\n")
 
 
+def test_the_memory_at_hand_is_known_here():
+    assert 1e8 < memory.available_memory() < float("inf")
+
+
 @pytest.mark.parametrize("name", ["max", "high"])
 @pytest.mark.parametrize("group", ["pod/job", "pod", "."])
 def test_every_group_around_limits(system, group, name):
