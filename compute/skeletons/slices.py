@@ -148,7 +148,7 @@ def _level_lengths(corners: Floats, values: Floats) -> Floats:
     opposite = np.roll(corners, 1, axis=1) - np.roll(corners, -1, axis=1)
     rise = np.linalg.norm(np.einsum("mi,mij->mj", values, opposite), axis=1) / 2
     # A triangle on which the field is level still has a place.
-    return np.maximum(rise, LEVEL * (rise.max() or 1.0))
+    return np.maximum(rise, LEVEL * (float(rise.max()) or 1.0))
 
 
 def _rises(lowest: Floats, offset: Ints, ends: Floats, least: float) -> Floats:
