@@ -9,10 +9,10 @@ from ..operators.messages.user_errors import Refusal
 from . import batch
 from .cluster import cluster_pool
 from .formats import name_of_divided, name_of_transferred
+from .formats.file_errors import problem_of
 from .jobs import Job, jobs_of_files, refused_jobs
 from .process_limits import end_with_parent, is_supervised, memory_limited
 from .process_pool import local_pool, units_of
-from .reading.reading_errors import problem_of
 from .registering import Register
 from .report import Report
 from .reporters import ProgressLine, reporter_for
