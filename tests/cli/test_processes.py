@@ -90,9 +90,9 @@ def parts_of(report):
 def stand_in(run, monkeypatch):
     """Processes that do nothing, and die of some files."""
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", STAND_IN])
+    monkeypatch.setattr(pool, "own_command", lambda: [sys.executable, "-c", STAND_IN])
 
 
 def test_a_file_that_kills_its_process_takes_no_other_with_it(run, stand_in, tmp_path):
@@ -130,9 +130,9 @@ def test_a_time_limit_needs_processes(run, star_off):
 
 def test_a_command_that_is_not_there_fails_every_file(run, folder, monkeypatch):
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: ["/there/is/no/blender"])
+    monkeypatch.setattr(pool, "own_command", lambda: ["/there/is/no/blender"])
     code, _, errors = run("batch", folder, "--jobs", 2)
     assert code == 1
     assert sum("no/blender" in line for line in errors) == 6
@@ -249,7 +249,7 @@ def address_of(address_file):
 
 def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tmp_path):
     run("--help")
-    from eigenparts.cli import cluster
+    from eigenparts.cli.processes import cluster
 
     monkeypatch.setattr(cluster, "PATIENCE", 1)
     code, _, errors = run("segment", star_off, "--scheduler", "tcp://127.0.0.1:9", "--output", tmp_path)
@@ -261,9 +261,9 @@ def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tm
 def crashing(run, monkeypatch):
     """Processes that crash at some files, and say what Blender says when memory runs out at others."""
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", CRASHES])
+    monkeypatch.setattr(pool, "own_command", lambda: [sys.executable, "-c", CRASHES])
 
 
 CRASHES = """
@@ -333,13 +333,13 @@ def test_a_killed_batch_leaves_no_process_behind(command_line, folder):
 def test_parts_of_their_own_have_numbers_of_their_own_behind_a_crash(run, monkeypatch, tmp_path):
     """As in one process, though another one does the files behind the one that crashed."""
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
     files = [write_off(turned(star(5, 2), seed=seed), tmp_path / f"{seed}.off") for seed in (1, 2)]
     ball = write_off(icosphere(2), tmp_path / "ball.off")
     (tmp_path / "bad.off").write_text("OFF\n")
-    own = process_pool.own_command()
-    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", WRAPPER, *own])
+    own = pool.own_command()
+    monkeypatch.setattr(pool, "own_command", lambda: [sys.executable, "-c", WRAPPER, *own])
     named = [files[0], tmp_path / "bad.off", files[1]]
     _, report, _ = run("register", *named, "--source", ball, "--json", "--timeout", 200)
     rows = [file["objects"][0]["parts"] for file in report["files"] if "objects" in file]
