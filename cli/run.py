@@ -11,6 +11,7 @@ from .formats import name_of_divided, name_of_transferred
 from .formats.file_errors import problem_of
 from .jobs import Job, jobs_of_files, refused_jobs
 from .processes.cluster import cluster_pool
+from .processes.interrupts import interruptible
 from .processes.limits import memory_limited
 from .processes.pool import local_pool, units_of
 from .processes.supervision import end_with_parent, is_supervised
@@ -28,7 +29,8 @@ def run_command(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
         end_with_parent()
     do = _run_batch if options.command == "batch" else _run_files
     try:
-        return do(options, out, err)
+        with interruptible():
+            return do(options, out, err)
     except Refusal as refusal:
         err.write(f"{refusal}\n")
     except OSError as error:

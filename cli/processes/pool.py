@@ -19,6 +19,7 @@ from ..jobs import Job
 from ..report import Report, without_version
 from ..run_serial import failed_report
 from .child_process import GRACE, ChildProcess, own_command
+from .interrupts import interrupt_held
 from .limits import memory_share
 from .supervision import SUPERVISED
 from .verdict import ProcessEnd, too_slow
@@ -116,7 +117,8 @@ class ProcessPool:
         while self._waiting and len(self._workers) < self.n_processes:
             unit = self._waiting.popleft()
             try:
-                self._workers.append(_Worker(self._start(unit), unit))
+                with interrupt_held():
+                    self._workers.append(_Worker(self._start(unit), unit))
             except OSError as error:
                 for job in unit.jobs:
                     yield failed_report(job, f"no process could be started: {error.strerror}: {error.filename}.")

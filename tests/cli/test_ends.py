@@ -11,7 +11,7 @@ from tests.shapes import star
 from tools.extension import ROOT
 
 # Seconds that are enough on a machine that is busy.
-LIMIT = 120
+LIMIT = 300
 LAUNCH = [sys.executable, "-P", str(ROOT / "cli" / "launch.py"), ""]
 # A program that uses the command line and ends as programs do, with all that keeps Python from ending.
 SCRIPT = """
