@@ -97,6 +97,6 @@ if __name__ == "__main__":
     from tools.extension import load_extension
 
     load_extension()
-    from eigenparts.cli.process_end import end_process
+    from eigenparts.cli.processes.ending import end_process
 
     end_process(main())

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import bpy
 
 from ..operators.messages.user_errors import MISSING_SCIPY, is_engine_complete
-from .process_end import let_python_end
+from .processes.ending import let_python_end
 
 _handles: list[object] = []
 

@@ -3,6 +3,6 @@
 import sys
 
 from . import main
-from .process_end import end_process
+from .processes.ending import end_process
 
 end_process(main(sys.argv[1:]))

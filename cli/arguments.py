@@ -8,7 +8,7 @@ from typing import TypeAlias
 from .. import compute
 from ..operators.transfer.layer_choices import DEFAULT_LAYERS, LAYERS_OF_FILES
 from .formats import FORMATS
-from .process_limits import CAN_LIMIT_MEMORY
+from .processes.limits import CAN_LIMIT_MEMORY
 
 EXIT_CODES = "Exit code: 0 if all went well, 1 if a file failed, 2 if the arguments are wrong."
 LAYERS = tuple(kind.lower() for kind in LAYERS_OF_FILES)

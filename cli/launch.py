@@ -6,12 +6,11 @@ usage: python -P launch.py FOLDER_OF_SCIPY COMMAND...
 import importlib.util
 import sys
 from pathlib import Path
-from typing import NoReturn
 
 PACKAGE = "eigenparts"
 
 
-def main(arguments: list[str]) -> NoReturn:
+def main(arguments: list[str]) -> None:
     """Run a command with the package that this file is part of, and end with its exit code."""
     folder_of_scipy, *argv = arguments
     # An extension has its libraries in a folder that only Blender's preferences know.
@@ -23,7 +22,7 @@ def main(arguments: list[str]) -> NoReturn:
     package = importlib.util.module_from_spec(spec)
     sys.modules[PACKAGE] = package
     spec.loader.exec_module(package)
-    package.cli.process_end.end_process(package.cli.main(argv))
+    package.cli.processes.ending.end_process(package.cli.main(argv))
 
 
 if __name__ == "__main__":

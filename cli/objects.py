@@ -28,9 +28,9 @@ def chosen_objects(file: OpenFile, name: str | None) -> OpenFile:
     return replace(file, objects=chosen)
 
 
-def report_each(file: OpenFile, work: Callable[[bpy.types.Object], ObjectRow]) -> list[ObjectRow]:
-    """Return a row for each object; what is wrong with one does not stop the others of its file."""
-    return [_report(obj, work, file.repairs_of(obj)) for obj in file.objects]
+def report_each(file: OpenFile, work: Callable[[bpy.types.Object], ObjectRow]) -> tuple[OpenFile, list[ObjectRow]]:
+    """Return a file with a row for each object; what is wrong with one does not stop the others of its file."""
+    return file, [_report(obj, work, file.repairs_of(obj)) for obj in file.objects]
 
 
 def analysis_settings(options: argparse.Namespace) -> AnalysisSettings:

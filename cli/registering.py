@@ -19,6 +19,7 @@ from ..operators.registration.mesh_registration import SharedParts
 from ..operators.registration.shape_registration import PreparedReference
 from . import formats
 from .digests import digest_of
+from .formats import OpenFile
 from .objects import analysis_settings, chosen_objects, report_each, row_of
 from .report import ObjectRow, Settings
 from .segmenting import choice_of
@@ -52,8 +53,8 @@ class Register:
         chosen_parts = {"choice": choice_of(options), "mirrored": options.mirrored}
         return {"command": "register", **given, **chosen_parts, "source": source}
 
-    def open_and_process(self, path: Path) -> list[ObjectRow]:
-        """Leave a file open with its meshes divided, and return a row for each."""
+    def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
+        """Leave a file open with its meshes divided, and return it with a row for each."""
         # The reference opens a file of its own, so it comes first.
         reference = self._reference
         file = chosen_objects(formats.load(path), self._options.object)

@@ -7,13 +7,14 @@ from typing import TextIO
 
 from ..operators.messages.user_errors import Refusal
 from . import batch
-from .cluster import cluster_pool
 from .formats import name_of_divided, name_of_transferred
-from .interrupts import interruptible
+from .formats.file_errors import problem_of
 from .jobs import Job, jobs_of_files, refused_jobs
-from .process_limits import end_with_parent, is_supervised, memory_limited
-from .process_pool import local_pool, units_of
-from .reading.reading_errors import problem_of
+from .processes.cluster import cluster_pool
+from .processes.interrupts import interruptible
+from .processes.limits import memory_limited
+from .processes.pool import local_pool, units_of
+from .processes.supervision import end_with_parent, is_supervised
 from .registering import Register
 from .report import Report
 from .reporters import ProgressLine, reporter_for

@@ -10,8 +10,9 @@ from ..operators.messages.user_errors import Refusal
 from . import formats
 from .atomic_write import check_room, remove_stale, stage_in
 from .digests import digest_of
+from .formats import OpenFile
+from .formats.file_errors import problem_of
 from .jobs import Job
-from .reading.reading_errors import problem_of
 from .report import ObjectRow, Report, Settings, problems_of
 from .suppress_output import blender_is_quiet
 from .targets import publish, refuse_before_work
@@ -24,8 +25,8 @@ class Command(Protocol):
     def settings(self) -> Settings:
         """All that the results depend on besides the files."""
 
-    def open_and_process(self, path: Path) -> list[ObjectRow]:
-        """Leave a file open with its meshes changed, and return a row for each."""
+    def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
+        """Leave a file open with its meshes changed, and return it with a row for each."""
 
 
 def run_in_this_process(jobs: Iterable[Job], command: Command) -> Iterator[Report]:
@@ -57,26 +58,26 @@ def _do(job: Job, command: Command, start: float) -> Report:
         raise Refusal("there is no such file.")
     refuse_before_work(job)
     report: Report = {"file": str(job.path), "digest": digest_of(job.path), "settings": command.settings}
-    report["objects"] = command.open_and_process(job.path)
+    file, report["objects"] = command.open_and_process(job.path)
     if problems := problems_of(report["objects"]):
         report["error"] = problems
     if any("error" not in row for row in report["objects"]):
-        _write(job, report, start)
+        _write(job, file, report, start)
     else:
         report["seconds"] = _seconds_since(start)
     return report
 
 
-def _write(job: Job, report: Report, start: float) -> None:
+def _write(job: Job, file: OpenFile, report: Report, start: float) -> None:
     with stage_in(job.target.absolute().parent) as stage:
-        _save(stage / job.target.name)
+        _save(stage / job.target.name, file)
         report["output"], report["seconds"] = str(job.target), _seconds_since(start)
         publish(job, stage, report)
 
 
-def _save(path: Path) -> None:
+def _save(path: Path, file: OpenFile) -> None:
     try:
-        formats.save(path)
+        formats.save(path, file)
     except RuntimeError as error:
         check_room(path.parent)
         # What is wrong stands at the end of what the exporters of Blender say, behind the name of a class.

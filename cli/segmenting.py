@@ -11,6 +11,7 @@ from ..operators.blender.known_values import mesh_of
 from ..operators.outputs.level_choice import LevelChoice
 from ..operators.parts import mesh_segmentation
 from . import formats
+from .formats import OpenFile
 from .objects import analysis_settings, chosen_objects, report_each, row_of
 from .report import ObjectRow, Settings
 
@@ -28,8 +29,8 @@ class Segment:
         given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
         return {"command": "segment", **given, "choice": choice_of(options)}
 
-    def open_and_process(self, path: Path) -> list[ObjectRow]:
-        """Leave a file open with its meshes divided, and return a row for each."""
+    def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
+        """Leave a file open with its meshes divided, and return it with a row for each."""
         return report_each(chosen_objects(formats.load(path), self._options.object), self._divide)
 
     def _divide(self, obj: bpy.types.Object) -> ObjectRow:

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 
-from .process_limits import is_supervised
+from .processes.supervision import is_supervised
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from ..operators.transfer.layer_reading import LayerChoice
 from ..operators.transfer.mesh_transfer import TransferSettings, TransferSource
 from . import formats
 from .digests import digest_of
+from .formats import OpenFile
 from .objects import chosen_objects, report_each
 from .report import ObjectRow, Settings
 
@@ -40,8 +41,8 @@ class Transfer:
         given = {"object": options.object, "layers": options.layers, "mirrored": options.mirrored}
         return {"command": "transfer", **given, "source": source}
 
-    def open_and_process(self, path: Path) -> list[ObjectRow]:
-        """Leave a file open whose meshes have the layers of the source, and return a row for each."""
+    def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
+        """Leave a file open whose meshes have the layers of the source, and return it with a row for each."""
         # The source opens a file of its own, so it comes first.
         source = self._source
         file = chosen_objects(formats.load(path), self._options.object)

@@ -26,7 +26,7 @@ OUTSIDE = {
     "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils", "numpy"},
 }
 
-# With it loaded, a Python that has Blender as a module may wait for ever at its end (`cli/process_end.py`).
+# With it loaded, a Python that has Blender as a module may wait for ever at its end (`cli/processes/ending.py`).
 NOWHERE = "scipy.optimize"
 
 # The rooms of a folder, each of which may import only those that stand before it.

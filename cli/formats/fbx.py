@@ -12,10 +12,17 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ...operators.messages.user_errors import Refusal
+from .damage import cut_short, damaged
 from .fbx_animation import stacks_written_once
+from .open_file import OpenFile, open_file
+from .own_attributes import claim_own_attributes
 from .part_materials import give_parts_materials
-from .repairs import OTHER_FACES, WHOLE_FILE, Repairs, refuse_no_numbers
+from .repairs import OTHER_FACES, WHOLE_FILE, refuse_no_numbers
 
+MAGIC, TEXT = b"Kaydara FBX Binary  \x00", b"; FBX"
+# Bytes of the head, and the version from which places in the file have 64 bits.
+HEAD, WIDE = 27, 7500
 # What a file that is damaged, or no binary one, can raise; the importer is asked then, and says what is wrong.
 DAMAGED = (
     *(OSError, ValueError, LookupError, TypeError, AttributeError, AssertionError, EOFError, ImportError),
@@ -23,18 +30,19 @@ DAMAGED = (
 )
 
 
-def read_fbx(path: Path) -> Repairs:
-    """Add the objects of a file to the scene, and return what was mended."""
+def read_fbx(path: Path) -> OpenFile:
+    """Open a file, with its bones and actions."""
     shapes = list(_shapes(path))
     refuse_no_numbers({name: n_bad for name, n_bad, _ in shapes})
     # Blender's own reader is young; the add-on is what writes the results, so it is asked where it is there.
     read = bpy.ops.import_scene.fbx if "fbx" in dir(bpy.ops.import_scene) else bpy.ops.wm.fbx_import
     read(filepath=str(path))
     n_listed, n_faces = sum(count for _, _, count in shapes), sum(len(mesh.polygons) for mesh in bpy.data.meshes)
-    return {WHOLE_FILE: [OTHER_FACES.format(n_listed, n_faces)]} if shapes and n_listed != n_faces else {}
+    repairs = {WHOLE_FILE: [OTHER_FACES.format(n_listed, n_faces)]} if shapes and n_listed != n_faces else {}
+    return open_file(claim_own_attributes(repairs))
 
 
-def write_fbx(path: Path) -> None:
+def write_fbx(path: Path, file: OpenFile) -> None:
     """Write all objects of the scene, with the parts in the names of materials."""
     give_parts_materials()
     with stacks_written_once():
@@ -48,6 +56,25 @@ def write_fbx(path: Path) -> None:
             path_mode="COPY",
             embed_textures=True,
         )
+
+
+def damage_of_fbx(path: Path) -> Refusal:
+    """Return what is wrong with an .fbx that Blender refused."""
+    data = path.read_bytes()
+    if data.lstrip().startswith(TEXT):
+        return Refusal("it is an .fbx written as text, which Blender cannot read; export it as a binary .fbx.")
+    if not data.startswith(MAGIC) or len(data) < HEAD:
+        return damaged("byte 0: this is no binary .fbx file")
+    (version,) = struct.unpack_from("<I", data, HEAD - 4)
+    at, number = HEAD, "<Q" if version >= WIDE else "<I"
+    while at + struct.calcsize(number) <= len(data):
+        (end,) = struct.unpack_from(number, data, at)
+        if end == 0:
+            return damaged("a record of the .fbx file is damaged")
+        if not at < end <= len(data):
+            return damaged(f"byte {at}: a record ends at byte {end}, and the file has {len(data)}")
+        at = end
+    return cut_short(f"byte {len(data)}")
 
 
 def _shapes(path: Path) -> Iterator[tuple[str, int, int]]:

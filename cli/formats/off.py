@@ -41,6 +41,33 @@ class OffFile:
     corners: NDArray[np.int64]
 
 
+@dataclass(frozen=True, eq=False)
+class FaceLines:
+    """The lines of the faces of a file, also of those that Blender cannot hold.
+
+    Attributes
+    ----------
+    n_corners : (F,) int64
+        On each line.
+    corners : (C,) int64
+        Of one line after the other.
+    kept : (F',) int64
+        The line of each face that the mesh has.
+    """
+
+    n_corners: NDArray[np.int64]
+    corners: NDArray[np.int64]
+    kept: NDArray[np.int64]
+
+    @property
+    def first_corner(self) -> NDArray[np.int64]:
+        """(F,) the first corner on each line, -1 where there is none."""
+        has_corners = self.n_corners > 0
+        first = np.full(len(has_corners), -1)
+        first[has_corners] = self.corners[(np.cumsum(self.n_corners) - self.n_corners)[has_corners]]
+        return first
+
+
 @dataclass(frozen=True)
 class _Text:
     """What a file says behind its head, line by line, without comments and empty lines.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
@@ -10,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...operators.blender.known_values import elements_of, mesh_of, present
-from ...operators.mesh_data.mesh_arrays import read_own_integers
+from ...operators.mesh_data.mesh_arrays import n_corners_of_polygon, read_own_integers, vertex_of_corner
 from ...operators.mesh_state.state import is_analyzed, read
 from ...operators.outputs.division import PART
 from ...operators.outputs.vertex_map import labels_of_vertices
-from .off import OffFile, parse_off
-from .repairs import MOVED, Repairs, move_to_neighbours
+from .off import FaceLines, OffFile, parse_off
+from .open_file import OpenFile, open_file
+from .repairs import MOVED, move_to_neighbours
 
 LEFT_OUT = (
     "Faces that cannot be divided: {} of {}; they have fewer than 3 corners, repeat a corner or another face, or name"
@@ -25,66 +25,35 @@ LEFT_OUT = (
 LINE = "line of the file"
 
 
-@dataclass(frozen=True, eq=False)
-class _Lines:
-    """The lines of the faces of a file.
-
-    Attributes
-    ----------
-    file : OffFile
-    kept : (F',) int64
-        The line of each face that the mesh has.
-    """
-
-    file: OffFile
-    kept: NDArray[np.int64]
-
-    @property
-    def corners(self) -> list[list[int]]:
-        """The corners on each line."""
-        corners, ends = self.file.corners.tolist(), np.cumsum(self.file.n_corners).tolist()
-        return [corners[start:end] for start, end in zip([0, *ends], ends, strict=False)]
-
-    @property
-    def first_corner(self) -> NDArray[np.int64]:
-        """(F,) the first corner on each line, -1 where there is none."""
-        has_corners = self.file.n_corners > 0
-        first = np.full(len(has_corners), -1)
-        first[has_corners] = self.file.corners[(np.cumsum(self.file.n_corners) - self.file.n_corners)[has_corners]]
-        return first
-
-
-# Of the file that is open: Blender has no place for faces that are none.
-_lines_of_open_file: _Lines
-
-
-def read_off(path: Path) -> Repairs:
-    """Add the mesh of a file to the scene, and return what was mended."""
-    global _lines_of_open_file
+def read_off(path: Path) -> OpenFile:
+    """Open a file, with the lines of its faces."""
     file = parse_off(path.read_bytes())
     mesh = bpy.data.meshes.new(path.stem)
     lines = _fill(mesh, file)
     # Before Blender puts them at the origin.
     n_moved = move_to_neighbours(mesh)
     kept, n_faces = _validated(mesh, lines), len(file.n_corners)
-    _lines_of_open_file = _Lines(file, kept)
     present(bpy.context.collection).objects.link(bpy.data.objects.new(path.stem, mesh))
     told = [MOVED.format(n_moved)] if n_moved else []
     told += [LEFT_OUT.format(n_faces - len(kept), n_faces)] if len(kept) < n_faces else []
-    return {mesh.name: told}
+    return open_file({mesh.name: told}, FaceLines(file.n_corners, file.corners, kept))
 
 
-def write_off(path: Path) -> None:
+def write_off(path: Path, file: OpenFile) -> None:
     """Write the mesh that was read, each line of a face with the colour of its part behind it."""
-    mesh = mesh_of(next(obj for obj in bpy.data.objects if obj.type == "MESH"))
-    labels = _labels_of_lines(mesh)
+    mesh = mesh_of(file.objects[0])
+    lines = file.face_lines or _lines_of(mesh)
+    labels = _labels_of_lines(mesh, lines)
     colours = _bytes_of_labels(mesh, int(labels.max(initial=0)) + 1)
-    places = [f"{vertex.co.x:.9g} {vertex.co.y:.9g} {vertex.co.z:.9g}" for vertex in mesh.vertices]
-    faces = [
-        f"{' '.join(map(str, [len(corners), *corners]))} {colours[label]}"
-        for corners, label in zip(_lines_of_open_file.corners, labels.tolist(), strict=True)
-    ]
-    path.write_text("\n".join(["OFF", f"{len(places)} {len(faces)} 0", *places, *faces]) + "\n", encoding="ascii")
+    # One text with places for all numbers is filled in much faster than a text for each line.
+    layouts = {size: f"{size}{' %d' * size} " for size in np.unique(lines.n_corners).tolist()}
+    faces = (
+        layouts[size] + colours[label] for size, label in zip(lines.n_corners.tolist(), labels.tolist(), strict=True)
+    )
+    text = "\n".join(
+        ["OFF", f"{len(mesh.vertices)} {len(labels)} 0", *["%.9g %.9g %.9g"] * len(mesh.vertices), *faces, ""]
+    )
+    path.write_text(text % (*_places(mesh), *lines.corners.tolist()), encoding="ascii")
 
 
 def _fill(mesh: bpy.types.Mesh, file: OffFile) -> NDArray[np.int64]:
@@ -116,10 +85,15 @@ def _validated(mesh: bpy.types.Mesh, lines: NDArray[np.int64]) -> NDArray[np.int
     return kept.astype(np.int64)
 
 
-def _labels_of_lines(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+def _lines_of(mesh: bpy.types.Mesh) -> FaceLines:
+    """Return a line for each face of a mesh that was not read from an .off file."""
+    corners = vertex_of_corner(mesh).astype(np.int64)
+    return FaceLines(n_corners_of_polygon(mesh), corners, np.arange(len(mesh.polygons)))
+
+
+def _labels_of_lines(mesh: bpy.types.Mesh, lines: FaceLines) -> NDArray[np.int32]:
     """Return the part of each line; of those that are no faces, that of the same face or around their first point."""
-    lines = _lines_of_open_file
-    labels = np.zeros(len(lines.file.n_corners), dtype=np.int32)
+    labels = np.zeros(len(lines.n_corners), dtype=np.int32)
     if is_analyzed(mesh) and PART.name in mesh.attributes:
         of_faces, first = read_own_integers(mesh, PART), lines.first_corner
         exists = (first >= 0) & (first < len(mesh.vertices))
@@ -129,13 +103,20 @@ def _labels_of_lines(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     return labels
 
 
-def _give_repeats_the_same(labels: NDArray[np.int32], lines: _Lines) -> None:
+def _give_repeats_the_same(labels: NDArray[np.int32], lines: FaceLines) -> None:
     repeats = np.setdiff1d(np.arange(len(labels)), lines.kept).tolist()
     if repeats:
-        corners = [frozenset(row) for row in lines.corners]
+        corners = [frozenset(row.tolist()) for row in np.split(lines.corners, np.cumsum(lines.n_corners)[:-1])]
         label_of = {corners[line]: labels[line] for line in lines.kept.tolist()}
         for line in repeats:
             labels[line] = label_of.get(corners[line], labels[line])
+
+
+def _places(mesh: bpy.types.Mesh) -> list[float]:
+    """Return the coordinates of one point after the other."""
+    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", places)
+    return places.tolist()
 
 
 def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 import numpy as np
 
@@ -9,16 +11,21 @@ from ...operators.mesh_data.attribute_values import STORAGES, read_attribute
 from ...operators.mesh_data.mesh_arrays import OwnAttribute, mark_own, own_names, write_attribute
 from ...operators.outputs import output_registry
 from ...operators.outputs.corner_colours import PART_COLOR
+from .repairs import Repairs
 
 RENAMED = 'the attribute "{}" of the file is "{}" in the result, as its name belongs to what is written there.'
 
 
-def claim_own_attributes(mesh: bpy.types.Mesh) -> list[str]:
-    """Mark what an earlier result brought along as ours, rename what cannot be of one, and return what is to be told.
+def claim_own_attributes(repairs: Repairs) -> Repairs:
+    """Mark what an earlier result brought along as ours, rename what cannot be of one, and add what is to be told.
 
     Formats other than .blend keep the names of attributes, but not the marks that tell ours from the user's.
     """
-    told: list[str] = []
+    told = {mesh.name: list(_claim(mesh)) for mesh in bpy.data.meshes}
+    return repairs | {name: [*repairs.get(name, ()), *sentences] for name, sentences in told.items() if sentences}
+
+
+def _claim(mesh: bpy.types.Mesh) -> Iterator[str]:
     for own in output_registry.result_attributes(None):
         attribute = mesh.attributes.get(own.name)
         if attribute is None or own.name in own_names(mesh):
@@ -29,8 +36,7 @@ def claim_own_attributes(mesh: bpy.types.Mesh) -> list[str]:
             _take_back(mesh, attribute, own)
         else:
             attribute.name = f"{own.name}_of_file"
-            told.append(RENAMED.format(own.name, attribute.name))
-    return told
+            yield RENAMED.format(own.name, attribute.name)
 
 
 def _is_result(attribute: bpy.types.Attribute, own: OwnAttribute) -> bool:

@@ -1,23 +1,37 @@
 """Stereolithography files, as text and binary."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import bpy
-import numpy as np
 
-from .repairs import Repairs, mended
+from .damage import cut_short
+from .open_file import OpenFile, open_file
+from .repairs import mended
 
-# Bytes of a binary file before its triangles, and of a triangle.
+# Bytes of a binary file before its triangles, with their number at the end, and of a triangle.
 HEAD, TRIANGLE = 84, 50
+# What files begin with that are text, and some that are not.
+TEXT = b"solid"
 
 
-def read_stl(path: Path) -> Repairs:
-    """Add the mesh of a file to the scene, and return what was mended."""
+def read_stl(path: Path) -> OpenFile:
+    """Open a file; a binary one has as many triangles as it says."""
+    n_triangles = _n_triangles(path.read_bytes())
     # Blender would put points that are no numbers at the origin, and not tell.
     bpy.ops.wm.stl_import(filepath=str(path), use_mesh_validate=False)
-    return mended(_n_triangles(path.read_bytes()))
+    return open_file(mended(n_triangles))
 
 
 def _n_triangles(data: bytes) -> int:
-    n_triangles = int(np.frombuffer(data[HEAD - 4 : HEAD], "<u4")[0]) if len(data) >= HEAD else 0
-    return n_triangles if len(data) == HEAD + TRIANGLE * n_triangles else data.count(b"endfacet")
+    """Return how many triangles a file lists; raises a Refusal if a binary one has fewer."""
+    n_triangles = int.from_bytes(data[HEAD - 4 : HEAD], "little")
+    n_there = (len(data) - HEAD) // TRIANGLE
+    if data[:HEAD].lstrip().startswith(TEXT) and len(data) != HEAD + TRIANGLE * n_triangles:
+        return data.count(b"endfacet")
+    if len(data) < HEAD:
+        raise cut_short(f"byte {len(data)}, within the head")
+    if n_there < n_triangles:
+        raise cut_short(f"byte {len(data)}, after {n_there} of {n_triangles} triangles")
+    return n_triangles

@@ -161,7 +161,7 @@ def _rises(lowest: Floats, offset: Ints, ends: Floats, least: float) -> Floats:
     top[offset[filled + 1] - 1] = ends[filled, 1]
     # Triangles across the level of a saddle reach a little below their arc.
     even = np.repeat((ends[:, 1] - ends[:, 0]) / np.maximum(count, 1), count)
-    return np.maximum(top - bottom, np.maximum(LEAST_RISE * even, max(least, np.finfo(float).tiny)))
+    return np.maximum(top - bottom, np.maximum(LEAST_RISE * even, max(least, float(np.finfo(float).tiny))))
 
 
 def _main_labels(of_triangle: Ints, label: NDArray[np.int32], area: Floats) -> Ints:

@@ -21,6 +21,11 @@ def test_the_first_file_is_the_source_if_none_is_named(parse, command):
     assert (named.source, named.files) == (Path("c.off"), [Path("a.off"), Path("b.off")])
 
 
+def test_a_time_limit_goes_with_all_that_has_processes(parse):
+    for where in ([], ["--jobs", "2"], ["--scheduler", "tcp://host:8786"]):
+        assert parse(["segment", "a.off", "--timeout", "5", *where]).timeout == 5
+
+
 def test_layers_are_a_set_of_known_kinds(parse):
     assert parse(["transfer", "a.off", "--layers", "UVs, groups,groups"]).layers == ["groups", "uvs"]
     assert parse(["transfer", "a.off"]).layers == ["groups"]
@@ -29,7 +34,7 @@ def test_layers_are_a_set_of_known_kinds(parse):
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["segment", "a.off", "--timeout", "5"], "so it needs --jobs or --scheduler"),
+        (["segment", "a.off", "--timeout", "5", "--in-process"], "so it does not go with --in-process"),
         (["segment", "a.off", "--jobs", "0"], "must be at least 1"),
         (["segment", "a.off", "--jobs", "2", "--timeout", "0"], "must be more than 0"),
         (["segment", "a.off", "--jobs", "2", "--timeout", "1e9"], "at most 604800"),

@@ -90,9 +90,9 @@ def parts_of(report):
 def stand_in(run, monkeypatch):
     """Processes that do nothing, and die of some files."""
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", STAND_IN])
+    monkeypatch.setattr(pool, "own_command", lambda: [sys.executable, "-c", STAND_IN])
 
 
 def test_a_file_that_kills_its_process_takes_no_other_with_it(run, stand_in, tmp_path):
@@ -130,9 +130,9 @@ def test_a_time_limit_needs_processes(run, star_off):
 
 def test_a_command_that_is_not_there_fails_every_file(run, folder, monkeypatch):
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: ["/there/is/no/blender"])
+    monkeypatch.setattr(pool, "own_command", lambda: ["/there/is/no/blender"])
     code, _, errors = run("batch", folder, "--jobs", 2)
     assert code == 1
     assert sum("no/blender" in line for line in errors) == 6
@@ -249,7 +249,7 @@ def address_of(address_file):
 
 def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tmp_path):
     run("--help")
-    from eigenparts.cli import cluster
+    from eigenparts.cli.processes import cluster
 
     monkeypatch.setattr(cluster, "PATIENCE", 1)
     code, _, errors = run("segment", star_off, "--scheduler", "tcp://127.0.0.1:9", "--output", tmp_path)
@@ -261,9 +261,9 @@ def test_a_scheduler_that_does_not_answer_is_told(run, star_off, monkeypatch, tm
 def crashing(run, monkeypatch):
     """Processes that crash at some files, and say what Blender says when memory runs out at others."""
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", CRASHES])
+    monkeypatch.setattr(pool, "own_command", lambda: [sys.executable, "-c", CRASHES])
 
 
 CRASHES = """
@@ -303,10 +303,11 @@ def test_named_files_share_a_process_until_one_crashes(run, crashing, tmp_path):
 def test_a_file_beyond_the_limit_of_memory_has_failed_and_says_so(command_line, tmp_path):
     files = [write_off(star(3, 2), tmp_path / "a.off"), write_off(star(5, 5), tmp_path / "large.off")]
     files.append(write_off(star(4, 2), tmp_path / "z.off"))
-    process = command_line("segment", *files, "--memory-limit", "0.02")
+    process = command_line("segment", *files, "--memory-limit", "0.03")
     out, err = process.communicate(timeout=300)
     assert (process.returncode, out.count(", written to ")) == (1, 2), err
-    assert err.startswith(f"{files[1]}: there is not enough memory for this file; ")
+    assert err.startswith(f"{files[1]}: large: The analysis of 10,242 vertices takes about ")
+    assert "of memory, and " in err
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signals of this kind")
@@ -333,9 +334,9 @@ def test_a_killed_batch_leaves_no_process_behind(command_line, folder):
 def test_numbers_of_parts_go_on_behind_a_crash(run, monkeypatch, tmp_path):
     """As in one process, though another one does the files behind the one that crashed."""
     run("--help")
-    from eigenparts.cli import process_pool
+    from eigenparts.cli.processes import pool
 
-    monkeypatch.setattr(process_pool, "own_command", lambda: [sys.executable, "-c", NUMBERS])
+    monkeypatch.setattr(pool, "own_command", lambda: [sys.executable, "-c", NUMBERS])
     files = [tmp_path / name for name in ("a.off", "bad.off", "c.off")]
     _, report, _ = run("register", *files, "--json-lines", "--timeout", 60)
     rows = [json.loads(line) for line in report]

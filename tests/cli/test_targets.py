@@ -140,8 +140,8 @@ def test_beside_a_damaged_report_only_the_same_result_is_right(job, tmp_path):
 
 
 def test_what_came_while_the_work_was_done_stays(job, tmp_path, monkeypatch):
-    def save_slowly(path):
-        save_as_text(path)
+    def save_slowly(path, file):
+        save_as_text(path, file)
         (tmp_path / "star_parts.mtl").write_text("days of work")
 
     monkeypatch.setattr(cli("formats"), "save", save_slowly)
@@ -161,6 +161,6 @@ def test_names_may_be_as_long_as_the_system_takes(job, tmp_path):
 
 
 def test_an_exporter_that_writes_nothing_is_told(job, tmp_path, monkeypatch):
-    monkeypatch.setattr(cli("formats"), "save", lambda path: path.with_name("other").touch())
+    monkeypatch.setattr(cli("formats"), "save", lambda path, file: path.with_name("other").touch())
     assert "no result" in run_job(job, 1)["error"]
     assert os.listdir(tmp_path) == ["star.obj"]

@@ -57,7 +57,7 @@ def size_in(path):
     if path.stat().st_size < 100:
         assert path.with_suffix(".mtl").read_text() == path.read_text()
         return float(path.read_text())
-    obj = cli("formats").load(path)[0]
+    obj = cli("formats").load(path).objects[0]
     bpy.context.view_layer.update()
     return size_of(obj)
 

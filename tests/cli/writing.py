@@ -33,16 +33,17 @@ class Resize:
         self.settings = {"level": level}
 
     def open_and_process(self, path):
-        """Leave the star open."""
+        """Leave the star open, which was not read from any file."""
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        add_object(TriangleMesh(SHAPE.vertices * self.settings["level"], SHAPE.triangles))
+        star = add_object(TriangleMesh(SHAPE.vertices * self.settings["level"], SHAPE.triangles))
         parts = {"level": 0, "n_levels": 1, "parts": []}
-        return [{"name": "star", **parts, "seconds": 0.0, "warnings": []}]
+        row = {"name": "star", **parts, "seconds": 0.0, "warnings": []}
+        return cli("formats").OpenFile([star], {}), [row]
 
 
-def save_as_text(path):
+def save_as_text(path, file):
     """Stand in for an exporter: two files with the size of the star, and no call of Blender's that could be killed."""
-    size = f"{size_of(bpy.data.objects[0]):.4g}"
+    size = f"{size_of(file.objects[0]):.4g}"
     path.write_text(size)
     path.with_suffix(".mtl").write_text(size)
 

@@ -1,17 +1,27 @@
-"""A look at a .gltf or .glb file before Blender opens it."""
+"""What a .gltf or .glb file says of itself, looked at before Blender opens it."""
 
+from __future__ import annotations
+
+import base64
 import json
 import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .damage import cut_short, damaged
 
 # What a .glb begins with, and its version.
 MAGIC, VERSION = b"glTF", 2
 JSON_CHUNK, BINARY_CHUNK = b"JSON", b"BIN\0"
-COMPONENT_SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+FLOAT32, TRIANGLES = 5126, 4
+COMPONENT_SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, FLOAT32: 4}
 N_COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 # A name of a file that is longer is none on any system.
 LONGEST_NAME = 4096
@@ -20,9 +30,87 @@ LONGEST_NAME = 4096
 Table = dict[str, Any]
 
 
-def check_glb(path: Path) -> None:
-    """Raise a Refusal if a .glb has not the chunks that it should have, or these are not what they say."""
-    data = path.read_bytes()
+@dataclass(frozen=True, eq=False)
+class GltfFile:
+    """A file whose tables fit together.
+
+    Attributes
+    ----------
+    table : dict
+        Of contents.
+    chunk : bytes
+        The binary one of a .glb.
+    folder : Path
+        Of the files that belong to it.
+    """
+
+    table: Table
+    chunk: bytes
+    folder: Path
+
+    def n_faces(self) -> dict[str, int]:
+        """Return how many triangles each mesh has, where nothing but triangles is listed and the name is its own."""
+        counts: dict[str, list[int]] = {}
+        for name, primitives in self._meshes():
+            is_plain = all(primitive.get("mode", TRIANGLES) == TRIANGLES for primitive in primitives)
+            n_corners = (self.table["accessors"][_corners(primitive)]["count"] for primitive in primitives)
+            counts.setdefault(name, []).append(sum(count // 3 for count in n_corners) if is_plain else -1)
+        return {name: found[0] for name, found in counts.items() if len(found) == 1 and found[0] >= 0}
+
+    def n_not_finite(self) -> dict[str, int]:
+        """Return how many points of each mesh are no numbers."""
+        return {
+            name: sum(map(self._n_bad, {primitive["attributes"]["POSITION"] for primitive in primitives}))
+            for name, primitives in self._meshes()
+        }
+
+    def _meshes(self) -> Iterator[tuple[str, list[Table]]]:
+        """Yield the name of each mesh, and those of its primitives that have points."""
+        for number, mesh in enumerate(_rows(self.table, "meshes")):
+            primitives = [part for part in _rows(mesh, "primitives") if "POSITION" in _table(part, "attributes")]
+            yield mesh.get("name") or f"Mesh_{number}", primitives
+
+    def _n_bad(self, number: int) -> int:
+        accessor = self.table["accessors"][number]
+        if "bufferView" not in accessor or accessor["componentType"] != FLOAT32:
+            return 0
+        view = self.table["bufferViews"][accessor["bufferView"]]
+        start, stride = view.get("byteOffset", 0) + accessor.get("byteOffset", 0), view.get("byteStride", 12)
+        places: NDArray[np.float32] = np.ndarray(
+            (accessor["count"], 3), "<f4", self._buffers[view["buffer"]], start, (stride, 4)
+        )
+        return int((~np.isfinite(places).all(axis=1)).sum())
+
+    @cached_property
+    def _buffers(self) -> list[bytes]:
+        return [self._buffer(buffer.get("uri")) for buffer in self.table["buffers"]]
+
+    def _buffer(self, uri: str | None) -> bytes:
+        if uri is None:
+            return self.chunk
+        if uri.startswith("data:"):
+            return base64.b64decode(uri.partition(",")[2])
+        return (self.folder / unquote(uri)).read_bytes()
+
+
+def parse_gltf(path: Path) -> GltfFile:
+    """Return what a file says of itself.
+
+    Raises
+    ------
+    Refusal
+        If it has not the chunks and files that it should have, or these are not what they say.
+    """
+    text, chunk, where = path.read_bytes(), b"", ""
+    if path.suffix.lower() == ".glb":
+        (text, chunk), where = _json_and_binary(text), "chunk JSON, "
+    table = _parsed(text, where)
+    _check_tables(table, path.parent, len(chunk))
+    return GltfFile(table, chunk, path.parent)
+
+
+def _json_and_binary(data: bytes) -> tuple[bytes, bytes]:
+    """Return the two chunks of a .glb, the second of which may be missing."""
     if len(data) < 12 or data[:4] != MAGIC:
         raise damaged('byte 0: it does not begin with "glTF" as a .glb does')
     version, length = struct.unpack_from("<II", data, 4)
@@ -33,13 +121,7 @@ def check_glb(path: Path) -> None:
     chunks = _chunks(data)
     if not chunks or chunks[0][0] != JSON_CHUNK:
         raise damaged("byte 12: the first chunk is not JSON")
-    binary = chunks[1][1] if len(chunks) > 1 and chunks[1][0] == BINARY_CHUNK else b""
-    _check_tables(_parsed(chunks[0][1], "chunk JSON, "), path.parent, len(binary))
-
-
-def check_gltf(path: Path) -> None:
-    """Raise a Refusal if a .gltf is not what it should be, or files that belong to it are missing."""
-    _check_tables(_parsed(path.read_bytes(), ""), path.parent, 0)
+    return chunks[0][1], chunks[1][1] if len(chunks) > 1 and chunks[1][0] == BINARY_CHUNK else b""
 
 
 def _chunks(data: bytes) -> list[tuple[bytes, bytes]]:
@@ -155,3 +237,9 @@ def _check_accessor(accessor: Table, number: int, views: list[Table], sizes: lis
     stride = _number(views[view], "byteStride", where, 0) or size
     if offset + stride * (count - 1) + size > sizes[view]:
         raise damaged(f"{where}: its {count} entries reach beyond bufferViews[{view}]")
+
+
+def _corners(primitive: Table) -> int:
+    """Return the accessor whose count is that of the corners."""
+    number: int = primitive.get("indices", primitive["attributes"]["POSITION"])
+    return number

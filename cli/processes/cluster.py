@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeAlias
 
-from ..operators.messages.user_errors import Refusal
+from ...operators.messages.user_errors import Refusal
+from ..jobs import Job
+from ..report import Report
+from ..run_serial import failed_report
 from .child_process import own_command, reports_in
-from .jobs import Job
-from .process_pool import LONG, Unit, arguments_of, as_given, clear_up, files_of
-from .process_verdict import ProcessEnd, too_slow
-from .report import Report
-from .run_serial import failed_report
+from .pool import LONG, Unit, arguments_of, as_given, clear_up, files_of
+from .verdict import ProcessEnd, too_slow
 
 # Seconds to wait for its scheduler.
 PATIENCE = 10

@@ -1,4 +1,6 @@
-"""Where a .blend, .fbx or .stl file that Blender could not read is damaged, as far as a look at it tells."""
+"""Blender's own files, and where one that Blender refused is damaged."""
+
+from __future__ import annotations
 
 import struct
 from pathlib import Path
@@ -7,28 +9,24 @@ import bpy
 
 from ...operators.messages.user_errors import Refusal
 from .damage import MEND, cut_short, damaged
+from .open_file import OpenFile, open_file
 
-BLEND = b"BLENDER"
+MAGIC = b"BLENDER"
 COMPRESSED = (b"\x28\xb5\x2f\xfd", b"\x1f\x8b")
-FBX, FBX_AS_TEXT = b"Kaydara FBX Binary  \x00", b"; FBX"
-# Bytes of the head of a binary .stl, with the number of triangles at its end, and of each triangle.
-STL_HEAD, STL_TRIANGLE = 84, 50
-WIDE_FBX = 7500
 
 
-def check_stl(path: Path) -> None:
-    """Raise a Refusal if a binary .stl has fewer triangles than it says."""
-    size = path.stat().st_size
-    with open(path, "rb") as stream:
-        head = stream.read(STL_HEAD)
-    if head.lstrip().startswith(b"solid"):
-        return
-    if len(head) < STL_HEAD:
-        raise cut_short(f"byte {size}, within the head")
-    (n_triangles,) = struct.unpack_from("<I", head, STL_HEAD - 4)
-    n_there = (size - STL_HEAD) // STL_TRIANGLE
-    if n_there < n_triangles:
-        raise cut_short(f"byte {size}, after {n_there} of {n_triangles} triangles")
+def read_blend(path: Path) -> OpenFile:
+    """Open a file as the window does, without running what is in it."""
+    bpy.ops.wm.open_mainfile(filepath=str(path), load_ui=False, use_scripts=False)
+    return open_file({})
+
+
+def write_blend(path: Path, file: OpenFile) -> None:
+    """Write all that is open."""
+    # The file is written one folder below its place, so Blender must not adapt the paths inside it.
+    if bpy.data.filepath and Path(bpy.data.filepath).parent.resolve() != path.parent.parent.resolve():
+        bpy.ops.file.make_paths_absolute()
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, check_existing=False, relative_remap=False)
 
 
 def damage_of_blend(path: Path) -> Refusal:
@@ -36,7 +34,7 @@ def damage_of_blend(path: Path) -> Refusal:
     data = path.read_bytes()
     if data.startswith(COMPRESSED):
         return damaged("it is damaged or cut short (and compressed, so that nobody can say where)")
-    if not data.startswith(BLEND):
+    if not data.startswith(MAGIC):
         return damaged("byte 0: this is no .blend file")
     version = _version_of_blend(data)
     if version is None or not (offset := _first_block(data)):
@@ -47,25 +45,6 @@ def damage_of_blend(path: Path) -> Refusal:
             "open it with that version or a later one."
         )
     return _damaged_block(data, offset)
-
-
-def damage_of_fbx(path: Path) -> Refusal:
-    """Return what is wrong with an .fbx that Blender refused."""
-    data = path.read_bytes()
-    if data.lstrip().startswith(FBX_AS_TEXT):
-        return Refusal("it is an .fbx written as text, which Blender cannot read; export it as a binary .fbx.")
-    if not data.startswith(FBX) or len(data) < 27:
-        return damaged("byte 0: this is no binary .fbx file")
-    (version,) = struct.unpack_from("<I", data, 23)
-    at, number = 27, "<Q" if version >= WIDE_FBX else "<I"
-    while at + struct.calcsize(number) <= len(data):
-        (end,) = struct.unpack_from(number, data, at)
-        if end == 0:
-            return damaged("a record of the .fbx file is damaged")
-        if not at < end <= len(data):
-            return damaged(f"byte {at}: a record ends at byte {end}, and the file has {len(data)}")
-        at = end
-    return cut_short(f"byte {len(data)}")
 
 
 def _version_of_blend(data: bytes) -> tuple[int, int] | None:

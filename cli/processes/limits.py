@@ -1,9 +1,6 @@
-"""Limits of a process: its memory, and the life of the process that started it."""
+"""Limits of the memory of a process."""
 
-import ctypes
 import itertools
-import os
-import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,30 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import compute
-from ..compute.memory import available_memory
+from ... import compute
+from ...compute.memory import available_memory
 
 GIGABYTE = 1 << 30
 # Only Linux counts the memory of a process so that the count can be limited.
 CAN_LIMIT_MEMORY = sys.platform == "linux"
-# Set in the environment of a process that another one waits for.
-SUPERVISED = "EIGENPARTS_SUPERVISED"
 # Rows of a matrix whose products need a buffer of every thread.
 BLOCKED = 300
 STATUS = Path("/proc/self/status")
-# Of Linux's prctl: the signal that a process gets when the one that started it ends.
-SET_PARENT_DEATH_SIGNAL = 1
-
-
-def is_supervised() -> bool:
-    """Whether this process does files for another one, which reads what it says."""
-    return SUPERVISED in os.environ
-
-
-def end_with_parent() -> None:
-    """Have the system end this process when the one that started it ends, where it can (Linux)."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
 
 
 def memory_share(n_processes: int) -> float | None:

@@ -9,30 +9,16 @@ from pathlib import Path
 from ...compute.errors import EngineError
 from ...operators.messages.user_errors import Refusal
 from ..atomic_write import PREFIX
-from ..process_verdict import MEMORY_WORDS, MORE_MEMORY, NO_MEMORY
-from .binary_files import check_stl, damage_of_blend, damage_of_fbx
+from ..processes.verdict import MEMORY_WORDS, MORE_MEMORY, NO_MEMORY
 from .damage import damaged
-from .gltf_file import check_glb, check_gltf
-from .ply_file import check_ply
 
 # What the errors of Blender's operators begin with.
 OPERATOR = "Error:"
-# What is looked at before Blender opens a file, and after it refused one.
-BEFORE: dict[str, Callable[[Path], None]] = {
-    ".ply": check_ply,
-    ".stl": check_stl,
-    ".glb": check_glb,
-    ".gltf": check_gltf,
-}
-AFTER: dict[str, Callable[[Path], Refusal]] = {".blend": damage_of_blend, ".fbx": damage_of_fbx}
 
 
 @contextmanager
-def reading_errors_told(path: Path) -> Iterator[None]:
-    """Turn all that goes wrong while Blender reads a file into a Refusal that says where and what."""
-    suffix = path.suffix.lower()
-    if suffix in BEFORE:
-        BEFORE[suffix](path)
+def reading_errors_told(path: Path, damage_of: Callable[[Path], Refusal] | None) -> Iterator[None]:
+    """Turn all that goes wrong while a file is read into a Refusal that says where and what."""
     try:
         yield
     except (Refusal, EngineError, MemoryError, OSError):
@@ -41,7 +27,7 @@ def reading_errors_told(path: Path) -> Iterator[None]:
         # Readers raise whatever their files lead them to.
         if any(word in str(error).lower() for word in MEMORY_WORDS):
             raise MemoryError from error
-        raise (AFTER[suffix](path) if suffix in AFTER else _not_understood(suffix)) from error
+        raise (damage_of or _not_understood)(path) from error
 
 
 def problem_of(error: Exception) -> str:
@@ -73,5 +59,5 @@ def _as_named(path: str) -> str:
     return re.sub(rf"{re.escape(PREFIX)}[^/\\]*[/\\]", "", path)
 
 
-def _not_understood(suffix: str) -> Refusal:
-    return damaged(f"what is in the {suffix} file does not fit together, and Blender cannot read it")
+def _not_understood(path: Path) -> Refusal:
+    return damaged(f"what is in the {path.suffix.lower()} file does not fit together, and Blender cannot read it")

@@ -1,11 +1,11 @@
-"""A look at a .ply file before Blender opens it, whose reader ends the process at some that are damaged."""
+"""What a .ply file says of itself, looked at before Blender opens it: its reader ends the process at damaged ones."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,8 @@ from numpy.typing import NDArray
 from .damage import cut_short, damaged
 
 TYPES = {
-    **{name: "i1" for name in ("char", "int8")},
-    **{name: "u1" for name in ("uchar", "uint8")},
-    **{name: "i2" for name in ("short", "int16")},
-    **{name: "u2" for name in ("ushort", "uint16")},
-    **{name: "i4" for name in ("int", "int32")},
-    **{name: "u4" for name in ("uint", "uint32")},
-    **{name: "f4" for name in ("float", "float32")},
-    **{name: "f8" for name in ("double", "float64")},
+    **dict(char="i1", uchar="u1", short="i2", ushort="u2", int="i4", uint="u4", float="f4", double="f8"),
+    **dict(int8="i1", uint8="u1", int16="i2", uint16="u2", int32="i4", uint32="u4", float32="f4", float64="f8"),
 }
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 # Blender counts in whole numbers of 32 bits.
@@ -53,6 +47,10 @@ class Element:
         """Whether its rows may have different sizes."""
         return any(column.length_type for column in self.properties)
 
+    def row_type(self, order: str) -> np.dtype[np.void]:
+        """Return the type of a row without lists."""
+        return np.dtype([(column.name, order + column.type) for column in self.properties])
+
 
 @dataclass(frozen=True)
 class Header:
@@ -60,41 +58,70 @@ class Header:
 
     Attributes
     ----------
+    text : str
     order : str
         Of the bytes, as numpy writes it; empty if the numbers are text.
     elements : list of Element
-    n_lines, size : int
-        Of the header.
     """
 
+    text: str
     order: str
     elements: list[Element]
-    n_lines: int
-    size: int
+
+    @property
+    def size(self) -> int:
+        """Where the rows begin."""
+        return len(self.text)
+
+    def count_of(self, name: str) -> int:
+        """Return how many rows an element has."""
+        return next((element.count for element in self.elements if element.name == name), 0)
 
 
-def check_ply(path: Path) -> None:
-    """Raise a Refusal if a .ply is not what its header says."""
-    data = path.read_bytes()
-    header = _header(data)
-    n_vertices = _n_vertices(header)
-    if header.order:
-        _check_bytes(data, header, n_vertices)
-    else:
-        _check_text(data, header, n_vertices)
+@dataclass(frozen=True, eq=False)
+class PlyFile:
+    """A file that is what its header says.
+
+    Attributes
+    ----------
+    header : Header
+    not_finite : (V,) bool, optional
+        The points that are no numbers; unknown if points have lists.
+    """
+
+    header: Header
+    not_finite: NDArray[np.bool_] | None
 
 
-def _header(data: bytes) -> Header:
+def parse_ply(data: bytes) -> PlyFile:
+    """Return what a file says of itself, and which of its points are no numbers.
+
+    Raises
+    ------
+    Refusal
+        If it is not what its header says.
+    """
+    header = header_of(data)
+    tables = _tables_of_bytes(data, header) if header.order else _tables_of_text(data, header)
+    if "vertex" not in tables:
+        return PlyFile(header, None)
+    places = np.stack([tables["vertex"][axis] for axis in "xyz"], axis=1)
+    return PlyFile(header, ~np.isfinite(places).all(axis=1))
+
+
+def header_of(data: bytes) -> Header:
+    """Return what a file says of itself; raises a Refusal if this makes no sense."""
     if not data.startswith(b"ply"):
         raise damaged('line 1: it does not begin with "ply"')
     end = re.compile(rb"(?:\r\n|\n|\r)end_header[ \t]*(?:\r\n|\n|\r|\Z)").search(data[:HEADER])
     if end is None:
         raise damaged('the header has no line "end_header"')
-    lines = data[: end.end()].decode("latin-1").splitlines()
-    order, elements = _order_and_elements(lines)
+    text = data[: end.end()].decode("latin-1")
+    order, elements = _order_and_elements(text.splitlines())
     if order is None:
         raise damaged("the header does not say in which format the numbers are")
-    return Header(order, elements, len(lines), end.end())
+    _check_elements(elements)
+    return Header(text, order, elements)
 
 
 def _order_and_elements(lines: list[str]) -> tuple[str | None, list[Element]]:
@@ -124,28 +151,31 @@ def _property(words: list[str]) -> Property | None:
     return None
 
 
-def _n_vertices(header: Header) -> int:
-    vertices = next((element for element in header.elements if element.name == "vertex"), None)
+def _check_elements(elements: list[Element]) -> None:
+    vertices = next((element for element in elements if element.name == "vertex"), None)
     if vertices is None:
         raise damaged("the header lists no vertices")
     if not {"x", "y", "z"} <= {column.name for column in vertices.properties if not column.length_type}:
         raise damaged("the header lists no x, y and z of the vertices")
-    for element in header.elements:
+    for element in elements:
         names = [column.name for column in element.properties]
         if len(set(names)) < len(names) or not names:
             raise damaged(f'the header lists the columns of "{element.name}" twice or not at all')
-    return vertices.count
 
 
-def _check_bytes(data: bytes, header: Header, n_vertices: int) -> None:
-    at = header.size
+def _tables_of_bytes(data: bytes, header: Header) -> dict[str, Any]:
+    """Return the rows of the elements without lists, by name."""
+    at, n_vertices, tables = header.size, header.count_of("vertex"), dict[str, Any]()
     for element in header.elements:
         if not element.has_lists:
-            at += element.count * sum(np.dtype(column.type).itemsize for column in element.properties)
-            if at > len(data):
+            row = element.row_type(header.order)
+            if at + element.count * row.itemsize > len(data):
                 raise cut_short(f'byte {len(data)}, within "{element.name}"')
+            tables[element.name] = np.frombuffer(data, row, element.count, at)
+            at += tables[element.name].nbytes
         elif element.count:
             at = _end_of_rows(data, at, element, header.order, n_vertices)
+    return tables
 
 
 def _end_of_rows(data: bytes, at: int, element: Element, order: str, n_vertices: int) -> int:
@@ -193,34 +223,39 @@ def _check_indices(column: Property, values: NDArray[np.generic], n_vertices: in
         raise damaged(f"{where}: a face has a corner that is none of the {n_vertices} vertices")
 
 
-def _check_text(data: bytes, header: Header, n_vertices: int) -> None:
-    lines = data[header.size :].splitlines()
-    at = 0
+def _tables_of_text(data: bytes, header: Header) -> dict[str, Any]:
+    """Return the columns of the elements without lists, by name."""
+    lines, first = data[header.size :].splitlines(), len(header.text.splitlines()) + 1
+    at, n_vertices, tables = 0, header.count_of("vertex"), dict[str, Any]()
     for element in header.elements:
-        rows = lines[at : at + element.count]
-        first = header.n_lines + at + 1
+        rows, line = lines[at : at + element.count], first + at
         if len(rows) < element.count:
-            raise cut_short(f'line {first + len(rows)}, after {len(rows)} of {element.count} rows of "{element.name}"')
+            raise cut_short(f'line {line + len(rows)}, after {len(rows)} of {element.count} rows of "{element.name}"')
         if not element.has_lists:
-            _check_table(rows, len(element.properties), first)
+            columns = _table(rows, len(element.properties), line).T
+            tables[element.name] = {
+                column.name: values for column, values in zip(element.properties, columns, strict=True)
+            }
         else:
-            for number, row in enumerate(rows, first):
+            for number, row in enumerate(rows, line):
                 _check_row(_numbers(row, number), element, n_vertices, number)
         at += element.count
+    return tables
 
 
-def _check_table(rows: list[bytes], n_columns: int, first: int) -> None:
-    """Raise a Refusal if a row has another number of columns, or anything but numbers."""
+def _table(rows: list[bytes], n_columns: int, first: int) -> NDArray[np.float64]:
+    """Return the numbers in rows; raises a Refusal if a row has not as many, or anything but numbers."""
     try:
         whole = np.array(b" ".join(rows).split(), dtype=np.float64)
     except ValueError:
         whole = np.empty(0)
     if len(whole) == n_columns * len(rows) and all(row.count(b" ") >= n_columns - 1 for row in rows):
-        return
-    for number, row in enumerate(rows, first):
-        n_numbers = len(_numbers(row, number))
-        if n_numbers != n_columns:
-            raise damaged(f"line {number}: there are {n_numbers} numbers where {n_columns} belong")
+        return whole.reshape(len(rows), n_columns)
+    table = [_numbers(row, number) for number, row in enumerate(rows, first)]
+    for number, numbers in enumerate(table, first):
+        if len(numbers) != n_columns:
+            raise damaged(f"line {number}: there are {len(numbers)} numbers where {n_columns} belong")
+    return np.array(table)
 
 
 def _numbers(row: bytes, number: int) -> list[float]:

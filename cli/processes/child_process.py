@@ -12,9 +12,9 @@ from typing import cast
 
 import bpy
 
-from ..operators.messages.user_errors import MISSING_SCIPY, Refusal
-from .process_verdict import ProcessEnd
-from .report import Report
+from ...operators.messages.user_errors import MISSING_SCIPY, Refusal
+from ..report import Report
+from .verdict import ProcessEnd
 
 # Bytes of what a process said last that are kept.
 TAIL = 1 << 14
@@ -101,7 +101,7 @@ def own_command() -> list[str]:
     if scipy is None or scipy.origin is None:
         raise Refusal(MISSING_SCIPY)
     folder_of_scipy = Path(scipy.origin).parents[1]
-    return [sys.executable, "-P", str(Path(__file__).with_name("launch.py")), str(folder_of_scipy)]
+    return [sys.executable, "-P", str(Path(__file__).parents[1] / "launch.py"), str(folder_of_scipy)]
 
 
 def reports_in(lines: list[str]) -> list[Report]:

@@ -1,0 +1,1 @@
+"""Processes that do files, here or on a cluster: how they are started, watched, limited and ended."""
