@@ -20,17 +20,9 @@ from ..report import Report, without_version
 from ..run_serial import failed_report
 from .child_process import GRACE, ChildProcess, own_command
 from .interrupts import interrupt_held
-<<<<<<< HEAD:cli/process_pool.py
-from .jobs import Job
-from .process_limits import SUPERVISED, memory_share
-from .process_verdict import ProcessEnd, too_slow
-from .report import Report, without_version
-from .run_serial import failed_report
-=======
 from .limits import memory_share
 from .supervision import SUPERVISED
 from .verdict import ProcessEnd, too_slow
->>>>>>> tidy:cli/processes/pool.py
 
 # A process that does several files does up to so many.
 MOST_FILES = 16
