@@ -28,12 +28,12 @@ OUR_COLOURS = "comment Colors are those of the parts, by Eigenparts\n"
 def read_ply(path: Path) -> OpenFile:
     """Open a file, with the parts of its faces if it is a result of ours."""
     data = path.read_bytes()
-    file = parse_ply(data)
+    header, not_finite = parse_ply(data)
     bpy.ops.wm.ply_import(filepath=str(path))
     # Blender has put points that are no numbers at the origin.
-    repairs = mended(file.header.count_of("face"), file.not_finite)
+    repairs = mended(header.count_of("face"), not_finite)
     for mesh in bpy.data.meshes:
-        _take_back_parts(mesh, file.header, data)
+        _take_back_parts(mesh, header, data)
     return open_file(claim_own_attributes(repairs))
 
 
