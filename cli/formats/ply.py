@@ -13,7 +13,7 @@ from ...operators.blender.known_values import elements_of, mesh_of
 from ...operators.mesh_data.mesh_arrays import n_corners_of_polygon, own_names, read_own_integers
 from ...operators.mesh_state.state import is_analyzed
 from ...operators.outputs.division import PART
-from ..atomic_write import write_surely
+from ..results.stages import write_surely
 from .open_file import OpenFile, open_file
 from .own_attributes import claim_own_attributes
 from .ply_file import Header, header_of, parse_ply
