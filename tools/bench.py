@@ -43,6 +43,7 @@ BENCHMARKS = {
     "skeleton": Benchmark(quick=""),
     "slider": Benchmark("", "--vertices 10000"),
     "size": Benchmark("", "--vertices 13000"),
+    "memory": Benchmark("", "--vertices 13000"),
     "load": Benchmark("", "--meshes 50 --changes 20"),
     "fuzzing": Benchmark("--cases 1000", "--cases 50"),
     "corpus": Benchmark("DATA"),
