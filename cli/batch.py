@@ -8,8 +8,8 @@ from pathlib import Path
 from ..operators.messages.user_errors import Refusal
 from .formats import FORMATS, name_of_divided
 from .jobs import Job, first_of_each, place_of
-from .report import Report, Settings
-from .resume import finished_report, is_result, may_be_result
+from .reports.report import Report, Settings
+from .results.resume import finished_report, is_result, may_be_result
 
 
 def find_jobs(options: argparse.Namespace) -> list[Job]:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .report import path_beside
+from .reports.report import Report, path_beside
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,11 @@ def refused_jobs(jobs: Iterable[Job], sources: Iterable[Path]) -> dict[Job, str]
         elif earlier is not job.path:
             refused[job] = f"its result would replace that of {earlier}; give them different folders."
     return refused
+
+
+def failed_report(job: Job, problem: str) -> Report:
+    """Return the report of a file that was not even begun."""
+    return {"file": str(job.path), "error": problem, "seconds": 0.0}
 
 
 def _identity(path: "str | os.PathLike[str]") -> tuple[int, int] | None:

@@ -16,7 +16,7 @@ from ..operators.parts.analysis_settings import AnalysisSettings
 from ..operators.parts.choice_items import ATTRIBUTE, EIGENFUNCTION, identifier
 from ..operators.parts.mesh_segmentation import AnalysisResult
 from .formats import OpenFile
-from .report import ObjectRow, part_rows
+from .reports.report import ObjectRow, part_rows
 
 
 def chosen_objects(file: OpenFile, name: str | None) -> OpenFile:

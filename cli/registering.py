@@ -18,10 +18,10 @@ from ..operators.registration.match_options import MatchOptions
 from ..operators.registration.mesh_registration import SharedParts
 from ..operators.registration.shape_registration import PreparedReference
 from . import formats
-from .digests import digest_of
 from .formats import OpenFile
 from .objects import analysis_settings, chosen_objects, report_each, row_of
-from .report import ObjectRow, Settings
+from .reports.report import ObjectRow, Settings
+from .results.digests import digest_of
 from .segmenting import choice_of
 
 

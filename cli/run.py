@@ -9,16 +9,16 @@ from ..operators.messages.user_errors import Refusal
 from . import batch
 from .formats import name_of_divided, name_of_transferred
 from .formats.file_errors import problem_of
-from .jobs import Job, jobs_of_files, refused_jobs
+from .jobs import Job, failed_report, jobs_of_files, refused_jobs
 from .processes.cluster import cluster_pool
 from .processes.interrupts import interruptible
 from .processes.limits import memory_limited
 from .processes.pool import local_pool, units_of
 from .processes.supervision import end_with_parent, is_supervised
 from .registering import Register
-from .report import Report
-from .reporters import ProgressLine, reporter_for
-from .run_serial import Command, failed_report, run_in_this_process
+from .reports.report import Report
+from .reports.reporters import ProgressLine, reporter_for
+from .run_serial import Command, run_in_this_process
 from .segmenting import Segment
 from .transferring import Transfer
 

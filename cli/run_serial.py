@@ -8,14 +8,14 @@ from typing import Protocol
 
 from ..operators.messages.user_errors import Refusal
 from . import formats
-from .atomic_write import check_room, remove_stale, stage_in
-from .digests import digest_of
 from .formats import OpenFile
 from .formats.file_errors import problem_of
 from .jobs import Job
-from .report import ObjectRow, Report, Settings, problems_of
-from .suppress_output import blender_is_quiet
-from .targets import publish, refuse_before_work
+from .processes.suppress_output import blender_is_quiet
+from .reports.report import ObjectRow, Report, Settings, problems_of
+from .results.digests import digest_of
+from .results.stages import check_room, remove_stale, stage_in
+from .results.targets import publish, refuse_before_work
 
 
 class Command(Protocol):
@@ -36,11 +36,6 @@ def run_in_this_process(jobs: Iterable[Job], command: Command) -> Iterator[Repor
         remove_stale(folder)
     for job in jobs:
         yield _report(job, command)
-
-
-def failed_report(job: Job, problem: str) -> Report:
-    """Return the report of a file that was not even begun."""
-    return {"file": str(job.path), "error": problem, "seconds": 0.0}
 
 
 def _report(job: Job, command: Command) -> Report:

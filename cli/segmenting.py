@@ -13,7 +13,7 @@ from ..operators.parts import mesh_segmentation
 from . import formats
 from .formats import OpenFile
 from .objects import analysis_settings, chosen_objects, report_each, row_of
-from .report import ObjectRow, Settings
+from .reports.report import ObjectRow, Settings
 
 
 class Segment:

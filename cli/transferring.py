@@ -17,10 +17,10 @@ from ..operators.transfer.layer_mapping import MappedLayers, map_to_all
 from ..operators.transfer.layer_reading import LayerChoice
 from ..operators.transfer.mesh_transfer import TransferSettings, TransferSource
 from . import formats
-from .digests import digest_of
 from .formats import OpenFile
 from .objects import chosen_objects, report_each
-from .report import ObjectRow, Settings
+from .reports.report import ObjectRow, Settings
+from .results.digests import digest_of
 
 
 class Transfer:

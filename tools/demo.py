@@ -20,7 +20,7 @@ from tools.extension import load_extension
 
 load_extension()
 from eigenparts.cli import formats
-from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.cli.processes.suppress_output import blender_is_quiet as quiet
 from eigenparts.operators.blender.known_values import mesh_of, present
 from eigenparts.operators.mesh_state.state import read
 from eigenparts.operators.messages.user_errors import Refusal

@@ -2,7 +2,7 @@
 
 import bpy
 
-from eigenparts.cli.suppress_output import blender_is_quiet
+from eigenparts.cli.processes.suppress_output import blender_is_quiet
 from tools.extension import PACKAGE
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from ...compute.errors import EngineError
 from ...operators.messages.user_errors import Refusal
-from ..atomic_write import PREFIX
 from ..processes.verdict import MEMORY_WORDS, MORE_MEMORY, NO_MEMORY
+from ..results.stages import PREFIX
 from .damage import damaged
 
 # What the errors of Blender's operators begin with.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from ..atomic_write import write_surely
+from ..results.stages import write_surely
 from .open_file import OpenFile, open_file
 from .part_materials import give_parts_materials
 from .repairs import mended

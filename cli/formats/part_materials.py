@@ -13,7 +13,7 @@ from ...operators.mesh_data.mesh_arrays import own_names, read_own_integers, rem
 from ...operators.mesh_state.state import is_analyzed, read
 from ...operators.outputs import corner_colours
 from ...operators.outputs.division import PART
-from ..part_names import name_of_part, names_of_parts
+from ..reports.part_names import name_of_part, names_of_parts
 
 # On materials of ours, in formats that keep custom properties: the name of the material they are a copy of, if any.
 COPY_OF = "eigenparts_copy_of"

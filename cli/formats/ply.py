@@ -13,7 +13,7 @@ from ...operators.blender.known_values import elements_of, mesh_of
 from ...operators.mesh_data.mesh_arrays import n_corners_of_polygon, own_names, read_own_integers
 from ...operators.mesh_state.state import is_analyzed
 from ...operators.outputs.division import PART
-from ..atomic_write import write_surely
+from ..results.stages import write_surely
 from .open_file import OpenFile, open_file
 from .own_attributes import claim_own_attributes
 from .ply_file import Header, header_of, parse_ply
@@ -28,12 +28,12 @@ OUR_COLOURS = "comment Colors are those of the parts, by Eigenparts\n"
 def read_ply(path: Path) -> OpenFile:
     """Open a file, with the parts of its faces if it is a result of ours."""
     data = path.read_bytes()
-    file = parse_ply(data)
+    header, not_finite = parse_ply(data)
     bpy.ops.wm.ply_import(filepath=str(path))
     # Blender has put points that are no numbers at the origin.
-    repairs = mended(file.header.count_of("face"), file.not_finite)
+    repairs = mended(header.count_of("face"), not_finite)
     for mesh in bpy.data.meshes:
-        _take_back_parts(mesh, file.header, data)
+        _take_back_parts(mesh, header, data)
     return open_file(claim_own_attributes(repairs))
 
 

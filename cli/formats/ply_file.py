@@ -78,23 +78,8 @@ class Header:
         return next((element.count for element in self.elements if element.name == name), 0)
 
 
-@dataclass(frozen=True, eq=False)
-class PlyFile:
-    """A file that is what its header says.
-
-    Attributes
-    ----------
-    header : Header
-    not_finite : (V,) bool, optional
-        The points that are no numbers; unknown if points have lists.
-    """
-
-    header: Header
-    not_finite: NDArray[np.bool_] | None
-
-
-def parse_ply(data: bytes) -> PlyFile:
-    """Return what a file says of itself, and which of its points are no numbers.
+def parse_ply(data: bytes) -> tuple[Header, NDArray[np.bool_] | None]:
+    """Return what a file says of itself, and which of its points are no numbers; None if points have lists.
 
     Raises
     ------
@@ -104,9 +89,9 @@ def parse_ply(data: bytes) -> PlyFile:
     header = header_of(data)
     tables = _tables_of_bytes(data, header) if header.order else _tables_of_text(data, header)
     if "vertex" not in tables:
-        return PlyFile(header, None)
+        return header, None
     places = np.stack([tables["vertex"][axis] for axis in "xyz"], axis=1)
-    return PlyFile(header, ~np.isfinite(places).all(axis=1))
+    return header, ~np.isfinite(places).all(axis=1)
 
 
 def header_of(data: bytes) -> Header:

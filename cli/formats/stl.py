@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 
-from .damage import cut_short
+from .damage import cut_short, damaged
 from .open_file import OpenFile, open_file
 from .repairs import mended
 
@@ -25,13 +25,16 @@ def read_stl(path: Path) -> OpenFile:
 
 
 def _n_triangles(data: bytes) -> int:
-    """Return how many triangles a file lists; raises a Refusal if a binary one has fewer."""
+    """Return how many triangles a file lists; raises a Refusal if a binary one has not as many."""
     n_triangles = int.from_bytes(data[HEAD - 4 : HEAD], "little")
-    n_there = (len(data) - HEAD) // TRIANGLE
-    if data[:HEAD].lstrip().startswith(TEXT) and len(data) != HEAD + TRIANGLE * n_triangles:
+    n_there, end = (len(data) - HEAD) // TRIANGLE, HEAD + TRIANGLE * n_triangles
+    if data[:HEAD].lstrip().startswith(TEXT) and len(data) != end:
         return data.count(b"endfacet")
     if len(data) < HEAD:
         raise cut_short(f"byte {len(data)}, within the head")
     if n_there < n_triangles:
         raise cut_short(f"byte {len(data)}, after {n_there} of {n_triangles} triangles")
+    if len(data) > end:
+        # Blender would take it for text.
+        raise damaged(f"byte {end}: there is something behind the {n_triangles} triangles")
     return n_triangles

@@ -13,7 +13,7 @@ from typing import cast
 import bpy
 
 from ...operators.messages.user_errors import MISSING_SCIPY, Refusal
-from ..report import Report
+from ..reports.report import Report
 from .verdict import ProcessEnd
 
 # Bytes of what a process said last that are kept.

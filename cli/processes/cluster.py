@@ -13,9 +13,8 @@ from functools import partial
 from typing import TypeAlias
 
 from ...operators.messages.user_errors import Refusal
-from ..jobs import Job
-from ..report import Report
-from ..run_serial import failed_report
+from ..jobs import Job, failed_report
+from ..reports.report import Report
 from .child_process import own_command, reports_in
 from .pool import LONG, Unit, arguments_of, as_given, clear_up, files_of
 from .verdict import ProcessEnd, too_slow

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import bpy
 
-from ..suppress_output import flush_streams
+from .suppress_output import flush_streams
 
 # What Blender calls the folder that each of its sessions has for temporary files.
 SESSION_FOLDER = "blender_"

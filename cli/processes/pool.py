@@ -14,10 +14,9 @@ from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 
-from ..atomic_write import remove_stale
-from ..jobs import Job
-from ..report import Report, without_version
-from ..run_serial import failed_report
+from ..jobs import Job, failed_report
+from ..reports.report import Report, without_version
+from ..results.stages import remove_stale
 from .child_process import GRACE, ChildProcess, own_command
 from .interrupts import interrupt_held
 from .limits import memory_share

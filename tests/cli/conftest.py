@@ -34,7 +34,7 @@ def run(capfd):
 
     def call(*arguments):
         extension = load_extension()
-        importlib.import_module("eigenparts.cli.suppress_output").flush_streams()
+        importlib.import_module("eigenparts.cli.processes.suppress_output").flush_streams()
         capfd.readouterr()
         command, *rest = map(str, arguments)
         is_here = command in COMMANDS and not any(option in OF_PROCESSES for option in rest)

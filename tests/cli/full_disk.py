@@ -33,7 +33,7 @@ def main(folder: Path) -> None:
 
 def levels_finished(job) -> list[int]:
     """Return the levels for which the result counts as finished."""
-    return [level for level in (1, 2) if cli("resume").finished_report(job, {"level": level})]
+    return [level for level in (1, 2) if cli("results.resume").finished_report(job, {"level": level})]
 
 
 @contextmanager

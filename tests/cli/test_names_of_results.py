@@ -17,8 +17,8 @@ SUFFIXES = (".blend", ".obj", ".ply", ".stl", ".glb", ".gltf", ".fbx", ".off")
 def cli():
     load_extension()
     return {
-        name: import_module(f"eigenparts.cli.{name}")
-        for name in ("formats", "jobs", "resume", "report", "digests", "targets")
+        name.rpartition(".")[2]: import_module(f"eigenparts.cli.{name}")
+        for name in ("formats", "jobs", "results.resume", "reports.report", "results.digests", "results.targets")
     }
 
 

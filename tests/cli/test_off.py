@@ -155,6 +155,19 @@ def test_a_result_can_be_divided_again_line_by_line(run, star_off, tmp_path):
     assert rows_of_faces(tmp_path / "again_parts.off") == rows_of_faces(again)
 
 
+def test_a_mesh_of_another_file_is_written_with_its_own_faces(run, tmp_path):
+    run("--help")
+    from eigenparts.cli import formats
+
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    mesh, faces = bpy.data.meshes.new("house"), [[0, 1, 2, 3], [3, 2, 4]]
+    mesh.from_pydata([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 1.5, 0]], [], faces)
+    file = formats.OpenFile([bpy.data.objects.new("house", mesh)], {})
+    formats.save(tmp_path / "house.off", file)
+    rows = [list(map(int, row.split())) for row in rows_of_faces(tmp_path / "house.off")]
+    assert [row[: row[0] + 1] for row in rows] == [[len(corners), *corners] for corners in faces]
+
+
 def test_a_point_that_is_no_number_goes_between_its_neighbours(run, tmp_path):
     mesh = star(5, 3)
     around = np.unique(mesh.triangles[(mesh.triangles == 10).any(axis=1)])

@@ -21,8 +21,8 @@ SKIPPED = DONE | {"file": "old.off", "skipped": True}
 @pytest.fixture(scope="module")
 def cli():
     load_extension()
-    names = ("report", "reporters", "arguments", "formats.file_errors")
-    return {name: import_module(f"eigenparts.cli.{name}") for name in names}
+    names = ("reports.report", "reports.reporters", "arguments", "formats.file_errors")
+    return {name.rpartition(".")[2]: import_module(f"eigenparts.cli.{name}") for name in names}
 
 
 def told(cli, options, reports):
@@ -81,7 +81,7 @@ def test_a_log_has_the_beginning_and_the_end(cli):
 
 
 def test_what_went_wrong_is_one_line_that_names_the_file(cli):
-    problem_of = cli["formats.file_errors"].problem_of
+    problem_of = cli["file_errors"].problem_of
     assert problem_of(FileNotFoundError(2, "No such file or directory", "x.off")) == (
         "No such file or directory: x.off."
     )
@@ -93,7 +93,7 @@ def test_what_went_wrong_is_one_line_that_names_the_file(cli):
 
 
 def test_what_could_not_be_written_is_told_without_the_folder_it_is_written_in_at_first(cli):
-    problem_of = cli["formats.file_errors"].problem_of
+    problem_of = cli["file_errors"].problem_of
     staged = "out/.eigenparts-x_parts.obj/x_parts.obj"
     assert problem_of(OSError(13, "Permission denied", staged)) == "Permission denied: out/x_parts.obj."
     assert problem_of(RuntimeError(f"Error: Cannot open file {staged}\n")) == (

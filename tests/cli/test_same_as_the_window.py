@@ -25,7 +25,7 @@ def window(capfd):
         bpy.context.view_layer.objects.active = bpy.data.objects[active]
         for obj in bpy.data.objects:
             obj.select_set(True)
-        flush = importlib.import_module("eigenparts.cli.suppress_output").flush_streams
+        flush = importlib.import_module("eigenparts.cli.processes.suppress_output").flush_streams
         flush()
         capfd.readouterr()
         assert getattr(bpy.ops.eigenparts, operator)(**options) == {"FINISHED"}

@@ -19,7 +19,7 @@ GOOD = {
 def read(tmp_path):
     def read_back(value):
         (tmp_path / "report.json").write_bytes(value if isinstance(value, bytes) else json.dumps(value).encode())
-        return cli("stored_report").read_report(tmp_path / "report.json")
+        return cli("reports.stored_report").read_report(tmp_path / "report.json")
 
     return read_back
 
@@ -72,7 +72,7 @@ def test_a_report_with_a_row_of_another_shape_is_none(read, row):
 
 
 def test_what_is_no_file_is_not_opened(tmp_path):
-    read_report = cli("stored_report").read_report
+    read_report = cli("reports.stored_report").read_report
     (tmp_path / "folder").mkdir()
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "link").symlink_to(tmp_path / "loop")

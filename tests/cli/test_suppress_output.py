@@ -13,7 +13,7 @@ from tools.extension import load_extension
 @pytest.fixture
 def quiet():
     load_extension()
-    return import_module("eigenparts.cli.suppress_output").blender_is_quiet
+    return import_module("eigenparts.cli.processes.suppress_output").blender_is_quiet
 
 
 def speak(words):

@@ -65,18 +65,18 @@ def test_a_users_file_that_was_overwritten_and_brought_back_is_the_users(job, tm
 def test_a_result_that_was_changed_is_neither_finished_nor_replaced(job, tmp_path, name, text):
     run_job(job, 1)
     (tmp_path / name).write_text(text)
-    assert cli("resume").finished_report(job, {"level": 1}) is None
+    assert cli("results.resume").finished_report(job, {"level": 1}) is None
     assert f"{tmp_path / name} is changed since it was written" in run_job(job, 1)["error"]
     assert (tmp_path / name).read_text() == text
     assert "error" not in run_job(replace(job, overwrite=True), 1)
-    assert cli("resume").finished_report(job, {"level": 1})
+    assert cli("results.resume").finished_report(job, {"level": 1})
 
 
 @pytest.mark.parametrize("name", ["star_parts.obj", "star_parts.mtl"])
 def test_a_result_that_is_gone_is_made_anew(job, tmp_path, name):
     run_job(job, 1)
     (tmp_path / name).unlink()
-    assert cli("resume").finished_report(job, {"level": 1}) is None
+    assert cli("results.resume").finished_report(job, {"level": 1}) is None
     assert "error" not in run_job(job, 1)
     assert (tmp_path / name).read_text() == "1"
 
@@ -99,7 +99,7 @@ def test_a_source_is_the_same_under_any_name_and_moves_with_its_result(job, tmp_
     for name in ("star.obj", "star_parts.obj", "star_parts.mtl", "star_parts.obj.json"):
         (tmp_path / name).rename(tmp_path / "moved" / name)
     moved = cli("jobs").Job(tmp_path / "moved" / "star.obj", tmp_path / "moved" / "star_parts.obj")
-    assert cli("resume").finished_report(moved, {"level": 2})
+    assert cli("results.resume").finished_report(moved, {"level": 2})
     assert "error" not in run_job(moved, 1)
 
 
@@ -125,7 +125,7 @@ def test_what_a_version_without_digests_wrote_is_told(job, tmp_path):
     old = json.loads(beside(job).read_text())
     del old["written"]
     beside(job).write_text(json.dumps(old))
-    assert cli("resume").finished_report(job, {"level": 1}) is None
+    assert cli("results.resume").finished_report(job, {"level": 1}) is None
     assert "a version that did not keep what it wrote" in run_job(job, 1)["error"]
     assert "error" not in run_job(replace(job, overwrite=True), 1)
 

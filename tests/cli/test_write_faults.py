@@ -46,7 +46,7 @@ def job(tmp_path):
 
 def sizes_finished(job):
     """Return the levels for which the result counts as finished, and check that it is the one of that level."""
-    finished = [level for level in (1, 2, 3) if cli("resume").finished_report(job, {"level": level})]
+    finished = [level for level in (1, 2, 3) if cli("results.resume").finished_report(job, {"level": level})]
     for level in finished:
         assert size_in(job.target) == pytest.approx(level, rel=1e-4)
     return finished
@@ -116,13 +116,13 @@ def test_room_that_comes_back_does_not_hide_that_there_was_none(job, tmp_path, s
     """These exporters go on where they could not write, and tell nobody."""
     job, limits = job(suffix), resource.getrlimit(resource.RLIMIT_FSIZE)
     run_job(job, 1)
-    digests_in = cli("atomic_write")._digests_in
+    digests_in = cli("results.stages")._digests_in
 
     def look_with_room(stage):
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
         return digests_in(stage)
 
-    monkeypatch.setattr(cli("atomic_write"), "_digests_in", look_with_room)
+    monkeypatch.setattr(cli("results.stages"), "_digests_in", look_with_room)
     report = with_limit(job.target.stat().st_size // 2, lambda: run_job(job, 2))
     assert "could not be written as a whole" in report["error"]
     assert_old_or_new(job, report, tmp_path)
@@ -209,7 +209,7 @@ def test_runs_that_write_the_same_result_go_on_side_by_side(job, tmp_path):
     job, seen = job(".off"), set()
     with process_at_work(job) as first, process_at_work(job) as second:
         for n_looks in itertools.count():
-            with cli("locks").folder_lock(tmp_path):
+            with cli("results.locks").folder_lock(tmp_path):
                 (level,) = sizes_finished(job)
             seen.add(level)
             if n_looks >= 20 and len(seen) == 2:

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 from PIL import Image
 
-from eigenparts.cli.suppress_output import blender_is_quiet as quiet
+from eigenparts.cli.processes.suppress_output import blender_is_quiet as quiet
 from eigenparts.operators.blender.known_values import present
 from tools.render import Pixels, View, light, paint_light, render
 

@@ -27,13 +27,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..operators.messages.user_errors import Refusal
-from .atomic_write import files_in
+from ...operators.messages.user_errors import Refusal
+from ..jobs import Job
+from ..reports.report import Report, Written, as_line, path_beside
+from ..reports.stored_report import StoredReport, read_report
 from .digests import NO_FILE, digest_there
-from .jobs import Job
 from .locks import folder_lock
-from .report import Report, Written, as_line, path_beside
-from .stored_report import StoredReport, read_report
+from .stages import files_in
 
 # Bytes of a name, on all file systems in use.
 LONGEST_NAME = 255

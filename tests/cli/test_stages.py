@@ -14,7 +14,7 @@ HOLDER = """
 import sys
 from pathlib import Path
 from tests.cli.writing import cli
-with cli("atomic_write").stage_in(Path(sys.argv[1])) as stage:
+with cli("results.stages").stage_in(Path(sys.argv[1])) as stage:
     (stage / "half").touch()
     print(stage.name, flush=True)
     sys.stdin.read()
@@ -22,8 +22,8 @@ with cli("atomic_write").stage_in(Path(sys.argv[1])) as stage:
 
 
 @pytest.fixture(scope="module")
-def atomic_write():
-    return cli("atomic_write")
+def stages():
+    return cli("results.stages")
 
 
 @pytest.fixture
@@ -41,9 +41,9 @@ def names_in(folder):
 
 
 @pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
-def test_a_stage_leaves_nothing(atomic_write, tmp_path, error):
+def test_a_stage_leaves_nothing(stages, tmp_path, error):
     def write_half():
-        with atomic_write.stage_in(tmp_path) as stage:
+        with stages.stage_in(tmp_path) as stage:
             (stage / "star.obj").write_text("half of the fac")
             assert len(names_in(tmp_path)) == 1
             raise error
@@ -53,27 +53,27 @@ def test_a_stage_leaves_nothing(atomic_write, tmp_path, error):
     assert names_in(tmp_path) == []
 
 
-def test_a_stage_is_hidden_and_short_whatever_the_name_of_the_result(atomic_write, tmp_path):
-    with atomic_write.stage_in(tmp_path) as stage, atomic_write.stage_in(tmp_path) as other:
+def test_a_stage_is_hidden_and_short_whatever_the_name_of_the_result(stages, tmp_path):
+    with stages.stage_in(tmp_path) as stage, stages.stage_in(tmp_path) as other:
         assert stage != other
         assert stage.name.startswith(".")
         assert len(stage.name) < 32
-        assert atomic_write.files_in(stage) == []
+        assert stages.files_in(stage) == []
 
 
-def test_the_stage_of_a_process_at_work_stays_and_that_of_one_that_was_killed_goes(atomic_write, other_run):
+def test_the_stage_of_a_process_at_work_stays_and_that_of_one_that_was_killed_goes(stages, other_run):
     process, stage = other_run
-    atomic_write.remove_stale(stage.parent)
+    stages.remove_stale(stage.parent)
     assert (stage / "half").exists()
     process.kill()
     process.wait()
-    atomic_write.remove_stale(stage.parent)
+    stages.remove_stale(stage.parent)
     assert names_in(stage.parent) == []
 
 
-def test_a_stage_without_a_word_in_it_goes_and_the_folders_of_the_user_stay(atomic_write, tmp_path):
+def test_a_stage_without_a_word_in_it_goes_and_the_folders_of_the_user_stay(stages, tmp_path):
     """A process may be killed before it marks its stage; names of stages are no names that anybody thinks of."""
-    with atomic_write.stage_in(tmp_path) as stage:
+    with stages.stage_in(tmp_path) as stage:
         pass
     stage.mkdir()
     mine = [
@@ -85,25 +85,23 @@ def test_a_stage_without_a_word_in_it_goes_and_the_folders_of_the_user_stay(atom
         folder.mkdir()
     (mine[1] / "notes").touch()
     (tmp_path / ".eigenparts-link").symlink_to(mine[1])
-    atomic_write.remove_stale(tmp_path)
+    stages.remove_stale(tmp_path)
     assert names_in(tmp_path) == sorted([*(folder.name for folder in mine), ".eigenparts-link"])
     assert names_in(mine[1]) == ["notes"]
 
 
-def test_a_file_system_without_locks_is_written_to_and_nothing_on_it_counts_as_stale(
-    atomic_write, tmp_path, monkeypatch
-):
+def test_a_file_system_without_locks_is_written_to_and_nothing_on_it_counts_as_stale(stages, tmp_path, monkeypatch):
     def lock_nothing(descriptor, operation):
         raise OSError(37, "No locks available")
 
-    monkeypatch.setattr(cli("locks").fcntl, "flock", lock_nothing)
-    with atomic_write.stage_in(tmp_path) as stage:
-        atomic_write.remove_stale(tmp_path)
+    monkeypatch.setattr(cli("results.locks").fcntl, "flock", lock_nothing)
+    with stages.stage_in(tmp_path) as stage:
+        stages.remove_stale(tmp_path)
         assert stage.exists()
 
 
 def test_a_folder_that_another_run_holds_is_waited_for_and_told_of(tmp_path, monkeypatch):
-    locks = cli("locks")
+    locks = cli("results.locks")
     monkeypatch.setattr(locks, "PATIENCE", 0.1)
     with locks.folder_lock(tmp_path), pytest.raises(TimeoutError, match="another run"), locks.folder_lock(tmp_path):
         pass
@@ -111,12 +109,12 @@ def test_a_folder_that_another_run_holds_is_waited_for_and_told_of(tmp_path, mon
         pass
 
 
-def test_what_an_exporter_does_not_tell_is_noticed(atomic_write, tmp_path):
+def test_what_an_exporter_does_not_tell_is_noticed(stages, tmp_path):
     """One of two times it writes less."""
     texts = iter(["all of it", "all of"])
-    with atomic_write.stage_in(tmp_path) as stage:
+    with stages.stage_in(tmp_path) as stage:
         path = stage / "star.obj"
         with pytest.raises(OSError, match="as a whole"):
-            atomic_write.write_surely(lambda: path.write_text(next(texts)), path)
-        atomic_write.write_surely(lambda: path.write_text("all of it"), path)
+            stages.write_surely(lambda: path.write_text(next(texts)), path)
+        stages.write_surely(lambda: path.write_text("all of it"), path)
     assert os.listdir(tmp_path) == []

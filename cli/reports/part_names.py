@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators.mesh_state.state import read
+from ...operators.mesh_state.state import read
 
 
 def names_of_parts(mesh: bpy.types.Mesh) -> dict[int, str]:

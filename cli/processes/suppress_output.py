@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 
-from .processes.supervision import is_supervised
+from .supervision import is_supervised
 
 
 @contextmanager

@@ -7,8 +7,8 @@ from typing import NotRequired, TypedDict, cast
 
 import bpy
 
-from ..compute.registration.parts.transferred_labels import FaceLabels
-from ..compute.segmentation.parts.part_labels import BranchLabels
+from ...compute.registration.parts.transferred_labels import FaceLabels
+from ...compute.segmentation.parts.part_labels import BranchLabels
 from .part_names import name_of_part, names_of_parts
 
 # Raised when the layout of the report changes; report.schema.json describes it.

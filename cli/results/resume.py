@@ -3,10 +3,10 @@
 import os
 from pathlib import Path
 
+from ..jobs import Job
+from ..reports.report import VERSION, Report, Settings, path_beside, without_version
+from ..reports.stored_report import read_report
 from .digests import digest_of
-from .jobs import Job
-from .report import VERSION, Report, Settings, path_beside, without_version
-from .stored_report import read_report
 from .targets import is_finished
 
 

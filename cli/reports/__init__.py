@@ -1,0 +1,1 @@
+"""Reports of files, for people and programs, and as they are kept with results."""

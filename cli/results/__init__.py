@@ -1,0 +1,1 @@
+"""Results: written in a stage, let take their places, and known again later."""
