@@ -45,6 +45,7 @@ BENCHMARKS = {
     "size": Benchmark("", "--vertices 13000"),
     "load": Benchmark("", "--meshes 50 --changes 20"),
     "fuzzing": Benchmark("--cases 1000", "--cases 50"),
+    "operators": Benchmark("0 400 --seeds 10", "0 100"),
     "corpus": Benchmark("DATA"),
 }
 
