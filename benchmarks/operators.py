@@ -2,9 +2,9 @@
 
 usage: python -m benchmarks.operators [SEED] [STEPS] [--seeds N] [--log FILE] [--replay FILE [--shrink]]
 
-Step k of a seed is the same wherever it is taken. The log has a line before each step, so that it also tells at which one a
-process has ended, and one after it. ``--replay`` takes the steps of the last seed of a log again; ``--shrink`` leaves out all that
-the last finding does not need, and prints what is left.
+Step k of a seed is the same wherever it is taken. The log has a line before each step, so that it also tells at which
+one a process has ended, and one after it. ``--replay`` takes the steps of the last seed of a log again; ``--shrink``
+leaves out all that the last finding does not need, and prints what is left.
 """
 
 import argparse
@@ -104,7 +104,7 @@ def _replay(seed: int, steps: list[Step], is_shrunk: bool) -> int:
 
 
 def shrunk(seed: int, steps: list[Step]) -> list[Step]:
-    """Return as few of the steps as still lead to the last finding; halves are left out first, single ones at the end."""
+    """Return as few of the steps as still lead to the last finding: halves are left out first, single ones at last."""
     found = [(number, one.findings[-1]) for number, one in enumerate(_taken(seed, steps)) if one.findings]
     if not found:
         return steps

@@ -1,6 +1,6 @@
 """All that is in a file, as values that can be compared: what a user has, and what operators left beside it.
 
-Each value has a place: the kind of data-block, its name, and what it is of it, such as ("meshes", "star", "layer heat").
+Each value has a place: the kind of data-block, its name, and what it is of it: ("meshes", "star", "layer heat").
 """
 
 import bpy
@@ -32,7 +32,8 @@ def belongings() -> dict[Place, object]:
     for kind in collections():
         for block in getattr(bpy.data, kind):
             describe = OF_KIND.get(kind, lambda block: {})
-            properties = {f"property {name}": plain(block[name]) for name in block.keys() if name not in NOT_KEPT}
+            names = set(block.keys()) - set(NOT_KEPT)
+            properties = {f"property {name}": plain(block[name]) for name in names}
             values = {"": True, **properties, **describe(block)}
             found |= {(kind, block.name_full, what): value for what, value in values.items()}
     return found

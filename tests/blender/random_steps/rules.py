@@ -16,7 +16,14 @@ SELECTED_ELEMENTS = ("meshes/layer .select_*",)
 # Blender edits all selected objects together.
 EDITED = (*SELECTED_ELEMENTS, "objects/mode")
 # All that changes on a mesh whose faces are cut; what may not is told by `rules_of_cut`.
-GEOMETRY = ("meshes/layer *", "meshes/faces", "meshes/normals", "meshes/user's faces", "shape_keys/key *", "objects/group *")
+GEOMETRY = (
+    "meshes/layer *",
+    "meshes/faces",
+    "meshes/normals",
+    "meshes/user's faces",
+    "shape_keys/key *",
+    "objects/group *",
+)
 
 
 @dataclass(frozen=True)
@@ -77,6 +84,8 @@ REACH = {
     # Choosing a part in the list selects its faces.
     "panel": Reach(active=SELECTED_ELEMENTS, anywhere=("scenes/eigenparts*",)),
 }
+
+
 @dataclass(frozen=True)
 class Scope:
     """What an operator is about.

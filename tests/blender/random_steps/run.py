@@ -122,7 +122,7 @@ def _traps(taken: Taken, folder: Path) -> Iterator[None]:
         taken.findings.append(f"printed: {_last_lines(error)}")
 
     # Presets go to a folder of the user's.
-    resource = mock.patch.object(bpy.utils, "user_resource", lambda kind, *, path="", create=False: str(folder))
+    resource = mock.patch.object(bpy.utils, "user_resource", return_value=str(folder))
     with warnings.catch_warnings(), mock.patch.object(sys, "excepthook", printed), resource:
         warnings.simplefilter("error")
         try:
