@@ -134,7 +134,7 @@ def _values(attribute: bpy.types.Attribute) -> object:
 def _normals(mesh: bpy.types.Mesh) -> object:
     if not mesh.has_custom_normals:
         return None
-    normals = np.empty(3 * len(mesh.loops), dtype=np.float32)
+    normals = np.empty(3 * len(mesh.corner_normals), dtype=np.float32)
     mesh.corner_normals.foreach_get("vector", normals)
     # Where coordinates are no numbers, so are normals, each time others.
     return np.round(normals, 2).tobytes() if np.isfinite(normals).all() else "no numbers"

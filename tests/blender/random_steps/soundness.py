@@ -31,7 +31,7 @@ def unsound(mesh: bpy.types.Mesh) -> set[str]:
 
 def invalid(mesh: bpy.types.Mesh) -> bool:
     """Return whether Blender would have to mend the faces of a mesh."""
-    if not np.isfinite(values_of(mesh, "position", 3, np.float32, "vector")).all():
+    if not len(mesh.vertices) or not np.isfinite(values_of(mesh, "position", 3, np.float32, "vector")).all():
         # Blender mends coordinates that are no numbers on the mesh that the copy was made of, too.
         return False
     copy = mesh.copy()

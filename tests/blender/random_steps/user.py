@@ -22,9 +22,14 @@ def meshes() -> list[bpy.types.Object]:
 
 
 def leave_mode() -> None:
-    """Go to object mode."""
-    if bpy.context.mode != "OBJECT" and bpy.ops.object.mode_set.poll():
-        bpy.ops.object.mode_set(mode="OBJECT")
+    """Put all objects into object mode; others than the active one may be edited, too."""
+    objects = bpy.context.view_layer.objects
+    active = objects.active
+    for obj in [obj for obj in objects if obj.mode != "OBJECT"]:
+        objects.active = obj
+        if bpy.ops.object.mode_set.poll():
+            bpy.ops.object.mode_set(mode="OBJECT")
+    objects.active = active
 
 
 def tidy(chance: Random) -> None:
@@ -33,10 +38,10 @@ def tidy(chance: Random) -> None:
         leave_mode()
         for obj in chance.sample(list(bpy.data.objects), len(bpy.data.objects) - MOST_OBJECTS + 6):
             bpy.data.objects.remove(obj)
-        bpy.data.orphans_purge(do_recursive=True)
     for obj in meshes():
         if len(obj.data.polygons) > MOST_FACES:
             bpy.data.objects.remove(obj)
+    bpy.data.orphans_purge(do_recursive=True)
     # Without this the view layer lists what is gone.
     bpy.context.view_layer.update()
     while sum(len(obj.data.polygons) > 50 for obj in meshes()) < 3:
