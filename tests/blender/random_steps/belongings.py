@@ -152,8 +152,11 @@ def _of_users_slots(mesh: bpy.types.Mesh) -> dict[str, object]:
 def _of_keys(keys: bpy.types.Key) -> dict[str, object]:
     places = {}
     for key in keys.key_blocks:
-        values = np.empty(3 * len(key.data), dtype=np.float32)
-        key.data.foreach_get("co", values)
+        # Keys of a mesh without vertices say that they have any number of points.
+        is_empty = isinstance(keys.user, bpy.types.Mesh) and not len(keys.user.vertices)
+        values = np.empty(0 if is_empty else 3 * len(key.data), dtype=np.float32)
+        if not is_empty:
+            key.data.foreach_get("co", values)
         settings = key.value, key.mute, key.slider_min, key.slider_max, key.vertex_group, _name(key.relative_key)
         places[f"key {key.name}"] = values.tobytes(), settings
     return places

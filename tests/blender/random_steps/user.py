@@ -36,17 +36,20 @@ def tidy(chance: Random) -> None:
     """Keep the scene small, but never without a mesh."""
     if len(bpy.data.objects) > MOST_OBJECTS:
         leave_mode()
-        for obj in chance.sample(list(bpy.data.objects), len(bpy.data.objects) - MOST_OBJECTS + 6):
-            bpy.data.objects.remove(obj)
-    for obj in meshes():
-        if len(obj.data.polygons) > MOST_FACES:
-            bpy.data.objects.remove(obj)
-    bpy.data.orphans_purge(do_recursive=True)
-    # Without this the view layer lists what is gone.
-    bpy.context.view_layer.update()
+        _remove(chance.sample(list(bpy.data.objects), len(bpy.data.objects) - MOST_OBJECTS + 6))
+    _remove([obj for obj in meshes() if len(obj.data.polygons) > MOST_FACES])
     while sum(len(obj.data.polygons) > 50 for obj in meshes()) < 3:
         leave_mode()
         cast.add_shape(chance.choice(["body", "star", "two", "ring"]), chance)
+
+
+def _remove(objects: list[bpy.types.Object]) -> None:
+    """Remove objects with what only they use."""
+    if objects:
+        bpy.data.batch_remove(objects)
+        bpy.data.orphans_purge(do_recursive=True)
+        # Without this the view layer lists what is gone.
+        bpy.context.view_layer.update()
 
 
 def add(chance: Random) -> str:
@@ -178,10 +181,7 @@ def rename(chance: Random) -> str:
 def delete(chance: Random) -> str:
     obj = chance.choice(list(bpy.data.objects))
     name = obj.name
-    bpy.data.objects.remove(obj)
-    if chance.random() < 0.5:
-        bpy.data.orphans_purge(do_recursive=True)
-    bpy.context.view_layer.update()
+    _remove([obj])
     return f"deletes {name}"
 
 
