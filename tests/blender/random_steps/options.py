@@ -14,10 +14,13 @@ LIKELY = {
     "order": ["1", "1", "1", "1", "AUTO", "2", "3"],
     "boundary": ["NEUMANN", "NEUMANN", "NEUMANN", "DIRICHLET"],
     "field": ["DIFFUSION", "DIFFUSION", "DIFFUSION", "EIGENFUNCTION", "ATTRIBUTE"],
-    "attribute": ["heat"],
+    **{"attribute": ["heat"], "mask": ["", "", "grip"], "group_names": ["grip"], "object_name": [""]},
+    "index": [0],
 }
 # Those that a call without them is about something else.
-ALWAYS = {"order", "part", "into", "attribute", "layers"}
+ALWAYS = {"order", "part", "into", "attribute", "layers", "location"}
+# From how far above the picked vertex the ray comes, in its own height.
+ABOVE = 10
 
 
 def options_of(operator: str, chance: Random, is_likely: bool) -> dict[str, object]:
@@ -32,6 +35,8 @@ def options_of(operator: str, chance: Random, is_likely: bool) -> dict[str, obje
 
 def value_of(declared: bpy.types.Property, chance: Random, is_likely: bool) -> object:
     """Return a value for a property; one for each component where it has several."""
+    if is_likely and declared.identifier in ("location", "direction"):
+        return _ray(chance)[declared.identifier]
     if getattr(declared, "is_array", False):
         return [_single(declared, chance, is_likely) for _ in range(declared.array_length)]
     return _single(declared, chance, is_likely)
@@ -49,8 +54,17 @@ def _single(declared: bpy.types.Property, chance: Random, is_likely: bool) -> ob
     if kind == "STRING":
         return chance.choice([*TEXTS, *_names(mesh)])
     if is_likely and declared.identifier in ("part", "into"):
-        return chance.choice(_parts(mesh) or [0])
+        return chance.choice([part for part in _parts(mesh) if part or declared.identifier == "into"] or [0])
     return chance.choice(LIKELY[kind] if is_likely else WHOLE if kind == "INT" else DECIMAL)
+
+
+def _ray(chance: Random) -> dict[str, list[float]]:
+    """Return where a ray begins that meets the active object from above, and its direction."""
+    obj = bpy.context.object
+    vertices = obj.data.vertices if obj is not None and obj.type == "MESH" else ()
+    place = obj.matrix_world @ chance.choice(vertices).co if len(vertices) else (0.0, 0.0, 0.0)
+    x, y, z = place
+    return {"location": [x, y, z + ABOVE * (1 + abs(z))], "direction": [0.0, 0.0, -1.0]}
 
 
 def _choice(declared: bpy.types.Property, chance: Random) -> object:

@@ -24,6 +24,7 @@ from tests.blender.pressed import press
 from tests.blender.random_steps import cast, rules, soundness, user
 from tests.blender.random_steps.belongings import Place, belongings, changed, names_on
 from tests.blender.random_steps.options import options_of
+from tests.blender.random_steps.readiness import make_ready
 
 # Seconds of CPU that an operator may take on meshes of some hundred faces.
 MOST_SECONDS = 30
@@ -153,7 +154,7 @@ def _save_and_load(taken: Taken, folder: Path) -> None:
 
 def _set_in_panel(taken: Taken, chance: Random) -> None:
     """Set a property of the active mesh, of a row of its list, or none if it has no parts."""
-    _make_ready("segment", chance)
+    make_ready("segment", chance)
     obj = bpy.context.object
     if obj is None or obj.type != "MESH":
         return
@@ -178,7 +179,7 @@ def _press(taken: Taken, chance: Random) -> None:
     name = taken.step.action
     is_ready = chance.random() < 0.8
     if is_ready:
-        _make_ready(name, chance)
+        make_ready(name, chance)
     options = options_of(name, chance, is_likely=is_ready and chance.random() < 0.8)
     mode, obj = bpy.context.mode, bpy.context.object
     taken.text = f"{obj.name if obj else None} [{mode}, {len(bpy.context.selected_objects)} selected] {options}"
@@ -288,27 +289,6 @@ def _ours_after(ours: dict[str, set[str]], before: dict[Place, object]) -> dict[
         name: ours.get(name, set()) | {what for what in names if (name, what) not in taken}
         for name, names in _ours().items()
     }
-
-
-def _make_ready(name: str, chance: Random) -> None:
-    """Make an object active that an operator takes, after an analysis if there is none."""
-    user.leave_mode()
-    user.change_selection(chance)
-    poll = getattr(bpy.ops.eigenparts, name).poll
-    candidates = [obj for obj in user.meshes() if _polls(obj, poll)]
-    if not candidates or chance.random() < 0.1:
-        cast.select(chance.choice([obj for obj in user.meshes() if len(obj.data.polygons) > 50]))
-        press("analyze", order="1")
-    else:
-        bpy.context.view_layer.objects.active = chance.choice(candidates)
-        bpy.context.object.select_set(True)
-    if chance.random() < 0.3:
-        user.select_some_faces(bpy.context.object.data, chance.random(), chance)
-
-
-def _polls(obj: bpy.types.Object, poll) -> bool:
-    bpy.context.view_layer.objects.active = obj
-    return poll()
 
 
 def _class_of(name: str) -> type[bpy.types.Operator]:

@@ -17,8 +17,8 @@ MOST_OBJECTS, MOST_FACES = 20, 600
 
 
 def meshes() -> list[bpy.types.Object]:
-    """Return the mesh objects of the view layer."""
-    return [obj for obj in bpy.context.view_layer.objects if obj.type == "MESH"]
+    """Return the mesh objects of the view layer, without the dots of a complex."""
+    return [obj for obj in bpy.context.view_layer.objects if obj.type == "MESH" and "eigenparts_role" not in obj]
 
 
 def leave_mode() -> None:
@@ -37,7 +37,7 @@ def tidy(chance: Random) -> None:
     if len(bpy.data.objects) > MOST_OBJECTS:
         leave_mode()
         _remove(chance.sample(list(bpy.data.objects), len(bpy.data.objects) - MOST_OBJECTS + 6))
-    _remove([obj for obj in meshes() if len(obj.data.polygons) > MOST_FACES])
+    _remove([obj for obj in bpy.data.objects if obj.type == "MESH" and len(obj.data.polygons) > MOST_FACES])
     while sum(len(obj.data.polygons) > 50 for obj in meshes()) < 3:
         leave_mode()
         cast.add_shape(chance.choice(["body", "star", "two", "ring"]), chance)
