@@ -15,10 +15,10 @@ LIKELY = {
     "boundary": ["NEUMANN", "NEUMANN", "NEUMANN", "DIRICHLET"],
     "field": ["DIFFUSION", "DIFFUSION", "DIFFUSION", "EIGENFUNCTION", "ATTRIBUTE"],
     **{"attribute": ["heat"], "mask": ["", "", "grip"], "group_names": ["grip"], "object_name": [""]},
-    "index": [0],
+    **{"index": [0], "into": [0]},
 }
 # Those that a call without them is about something else.
-ALWAYS = {"order", "part", "into", "attribute", "layers", "location"}
+ALWAYS = {"order", "part", "into", "attribute", "location"}
 # From how far above the picked vertex the ray comes, in its own height.
 ABOVE = 10
 
@@ -53,8 +53,8 @@ def _single(declared: bpy.types.Property, chance: Random, is_likely: bool) -> ob
         return chance.choice(LIKELY[declared.identifier])
     if kind == "STRING":
         return chance.choice([*TEXTS, *_names(mesh)])
-    if is_likely and declared.identifier in ("part", "into"):
-        return chance.choice([part for part in _parts(mesh) if part or declared.identifier == "into"] or [0])
+    if is_likely and declared.identifier == "part":
+        return chance.choice([part for part in _parts(mesh) if part] or [0])
     return chance.choice(LIKELY[kind] if is_likely else WHOLE if kind == "INT" else DECIMAL)
 
 

@@ -7,8 +7,8 @@ import bpy
 from tests.blender.pressed import press
 from tests.blender.random_steps import cast, user
 
-# Faces from which on a mesh has parts worth the name.
-FEW_FACES = 50
+# Faces and parts that are too few to do much with.
+FEW_FACES, FEW_PARTS = 50, 2
 TO_OTHERS = {"register_selected", "transfer"}
 OF_REGISTERED = {"flip_function", "next_alternative"}
 OF_CORRECTED = {"remove_correction", "clear_corrections"}
@@ -26,6 +26,7 @@ def make_ready(name: str, chance: Random) -> None:
         _prepare(name, chance)
     if name in TO_OTHERS and chance.random() < 0.7:
         _add_twin()
+        bpy.context.object.vertex_groups.new(name="grip").add([0, 1, 2], 0.5, "REPLACE")
     if chance.random() < 0.3 or name == "paint_part":
         user.select_some_faces(bpy.context.object.data, chance.random(), chance)
 
@@ -37,9 +38,14 @@ def _is_ready(obj: bpy.types.Object, name: str) -> bool:
         return "registration" in state
     if name in OF_CORRECTED and not len(obj.data.eigenparts.correction_rows):
         return False
+    if len(obj.data.eigenparts.rows) <= FEW_PARTS and (state or "part" in _properties(name)):
+        return False
     bpy.context.view_layer.objects.active = obj
-    is_analyzed = len(obj.data.eigenparts.rows) > 2 or not state
-    return is_analyzed and (name in TO_OTHERS or getattr(bpy.ops.eigenparts, name).poll())
+    return name in TO_OTHERS or getattr(bpy.ops.eigenparts, name).poll()
+
+
+def _properties(name: str) -> list[str]:
+    return getattr(bpy.ops.eigenparts, name).get_rna_type().properties.keys()
 
 
 def _prepare(name: str, chance: Random) -> None:
