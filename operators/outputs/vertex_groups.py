@@ -67,7 +67,7 @@ def _own_groups(mesh: bpy.types.Mesh) -> dict[int, str]:
 
 def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) -> dict[int, bpy.types.VertexGroup]:
     """Return an empty group for each part; those of parts that are gone are removed."""
-    with _active_group_kept(obj):
+    with active_group_kept(obj):
         _drop(obj, _own_groups(mesh).values())
         # Where the user has a group of that name, Blender gives ours a number.
         groups = {part: obj.vertex_groups.new(name=name) for part, name in names.items()}
@@ -77,14 +77,14 @@ def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) 
 
 
 def _drop(obj: bpy.types.Object, names: Iterable[str]) -> None:
-    with _active_group_kept(obj):
+    with active_group_kept(obj):
         for name in names:
             if name in obj.vertex_groups:
                 obj.vertex_groups.remove(obj.vertex_groups[name])
 
 
 @contextmanager
-def _active_group_kept(obj: bpy.types.Object) -> Iterator[None]:
+def active_group_kept(obj: bpy.types.Object) -> Iterator[None]:
     """Leave the group active that was, if it is still there: Blender takes the one that was added last."""
     active = obj.vertex_groups.active
     active_name = active.name if active else ""

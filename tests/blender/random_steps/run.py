@@ -30,7 +30,7 @@ from tests.blender.random_steps.readiness import make_ready
 MOST_SECONDS = 30
 PRESS, PANEL, SAVE = "press", "panel", "save"
 # Operators that take seconds, and the rounds in which they are pressed.
-SLOW, ROUNDS_BETWEEN = {"register_selected", "transfer", "plot_diagram"}, 2
+SLOW, ROUNDS_BETWEEN = {"register_selected", "transfer", "plot_diagram"}, 3
 # How often the user does something, for each time that every operator is pressed.
 USERS_SHARE = 0.6
 
