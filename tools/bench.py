@@ -46,6 +46,7 @@ BENCHMARKS = {
     "memory": Benchmark("", "--vertices 13000 --stages segment"),
     "load": Benchmark("", "--meshes 50 --changes 20"),
     "fuzzing": Benchmark("--cases 1000", "--cases 50"),
+    "operators": Benchmark("0 400 --seeds 10", "0 100"),
     "corpus": Benchmark("DATA"),
 }
 

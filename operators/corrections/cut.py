@@ -49,7 +49,7 @@ class EIGENPARTS_OT_cut(TypedProperties, bpy.types.Operator):
             state, n_before = read(mesh), len(mesh.polygons)
             registration_record.refuse_registered(state.registration)
             shares = state.summary.shares
-            with all_or_nothing(mesh), faces_or_nothing(mesh):
+            with all_or_nothing(mesh):
                 if self.method == "INSERT":
                     insert_borders(present(context.object), state)
                 else:
@@ -76,12 +76,14 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     level, mode = state.level, state.mode
     profile, crossings = corrected_analysis.crossings(state, state.border_source)
     arcs = state.analysis.part_tree.arcs_of_faces
-    with normals_kept(mesh):
-        faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64), state.stretch)
-    for number, arc in enumerate(arcs):
-        arcs[number] = np.concatenate([arc, arc[faces.origin]])
-        arcs[number][faces.face] = faces.arcs[:, number]
-    _show(state, arcs, level, mode)
+    # From here on the faces are not what they were; a refusal before has not touched them.
+    with faces_or_nothing(mesh):
+        with normals_kept(mesh):
+            faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64), state.stretch)
+        for number, arc in enumerate(arcs):
+            arcs[number] = np.concatenate([arc, arc[faces.origin]])
+            arcs[number][faces.face] = faces.arcs[:, number]
+        _show(state, arcs, level, mode)
 
 
 def move_borders(state: MeshState) -> None:

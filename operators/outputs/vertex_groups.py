@@ -1,6 +1,7 @@
 """Output: a vertex group for each part, with hard borders or softened over a width on the surface."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 import bpy
 import numpy as np
@@ -68,20 +69,28 @@ def _own_groups(mesh: bpy.types.Mesh) -> dict[int, str]:
 
 def _groups(mesh: bpy.types.Mesh, obj: bpy.types.Object, names: dict[int, str]) -> dict[int, bpy.types.VertexGroup]:
     """Return an empty group for each part; those of parts that are gone are removed."""
-    _drop(obj, _own_groups(mesh).values())
-    # Where the user has a group of that name, Blender gives ours a number.
-    groups = {part: obj.vertex_groups.new(name=name) for part, name in names.items()}
+    with active_group_kept(obj):
+        _drop(obj, _own_groups(mesh).values())
+        # Where the user has a group of that name, Blender gives ours a number.
+        groups = {part: obj.vertex_groups.new(name=name) for part, name in names.items()}
     mesh[OWN_GROUPS] = {str(part): group.name for part, group in groups.items()}
     # New groups may have moved in memory while others were added.
     return {part: obj.vertex_groups[name] for part, name in _own_groups(mesh).items()}
 
 
 def _drop(obj: bpy.types.Object, names: Iterable[str]) -> None:
+    with active_group_kept(obj):
+        for name in names:
+            if name in obj.vertex_groups:
+                obj.vertex_groups.remove(obj.vertex_groups[name])
+
+
+@contextmanager
+def active_group_kept(obj: bpy.types.Object) -> Iterator[None]:
+    """Leave the group active that was, if it is still there: Blender takes the one that was added last."""
     active = obj.vertex_groups.active
     active_name = active.name if active else ""
-    for name in names:
-        if name in obj.vertex_groups:
-            obj.vertex_groups.remove(obj.vertex_groups[name])
+    yield
     if active_name in obj.vertex_groups:
         obj.vertex_groups.active = obj.vertex_groups[active_name]
 

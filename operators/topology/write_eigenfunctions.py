@@ -53,7 +53,7 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bp
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., VertexFunctions], MeshHandle]:
         mesh = mesh_of(context.object)
-        mesh_arrays.refuse_foreign(mesh, _attributes(self.n_functions))
+        mesh_arrays.refuse_foreign(mesh, _attributes_there(mesh, self.n_functions))
         shape = mesh_arrays.read_object(context, present(context.object), use_modifiers=False)
         solve = partial(_functions_on_vertices, shape, self.n_functions)
         return solve, MeshHandle.of(present(context.object))
@@ -70,7 +70,17 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bp
 
 
 def _attributes(n_functions: int) -> tuple[OwnAttribute, ...]:
-    return tuple(OwnAttribute(f"{PREFIX}{number}", "FLOAT", "POINT") for number in range(1, n_functions + 1))
+    return tuple(_attribute(number) for number in range(1, n_functions + 1))
+
+
+def _attribute(number: int) -> OwnAttribute:
+    return OwnAttribute(f"{PREFIX}{number}", "FLOAT", "POINT")
+
+
+def _attributes_there(mesh: bpy.types.Mesh, n_functions: int) -> tuple[OwnAttribute, ...]:
+    """Return those of the first attributes of functions whose names are taken: nobody can say how many there may be."""
+    names = (name for name in mesh.attributes.keys() if name.removeprefix(PREFIX).isdecimal())  # noqa: SIM118
+    return tuple(_attribute(number) for name in names if (number := int(name.removeprefix(PREFIX))) <= n_functions)
 
 
 def _functions_on_vertices(

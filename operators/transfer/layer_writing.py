@@ -16,6 +16,7 @@ from ..mesh_state import state
 from ..messages.user_errors import Refusal, in_name_of
 from ..outputs import corner_colours
 from ..outputs.division import PART, Division
+from ..outputs.vertex_groups import active_group_kept
 from . import layers
 from .layer_reading import read_weights
 from .layers import Layer
@@ -147,9 +148,11 @@ def _write_groups(obj: bpy.types.Object, some: list[Layer], share: NDArray[np.fl
         return
     before = read_weights(obj, names)
     after = compute.mixed(before, np.hstack([layer.values for layer in some]), share)
+    with active_group_kept(obj):
+        for name in names:
+            if name not in obj.vertex_groups:
+                obj.vertex_groups.new(name=name)
     for name, column, old in zip(names, np.clip(after, 0, 1).T, before.T, strict=True):
-        if name not in obj.vertex_groups:
-            obj.vertex_groups.new(name=name)
         fill_group(obj.vertex_groups[name], np.where(column < LEAST_WEIGHT, 0, column), old)
 
 

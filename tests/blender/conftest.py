@@ -1,5 +1,7 @@
 """Load the checkout the way Blender loads an extension, and put meshes into the scene."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,15 @@ def fresh_scene(extension):
     extension.register()
     yield
     extension.unregister()
+
+
+@pytest.fixture
+def tracebacks(monkeypatch):
+    """What Python said in callbacks of properties, where Blender only prints it; it must be nothing."""
+    told = []
+    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: told.append(repr(error)))
+    yield told
+    assert told == []
 
 
 @pytest.fixture(scope="session")

@@ -129,7 +129,7 @@ def draw_panels():
 def draw_everything():
     """Draw all panels, menus and preferences of ours for the active object, and return a record of it."""
     record, context = Record(), Context()
-    for drawing in _ours(bpy.types.Panel):
+    for drawing in registered(bpy.types.Panel):
         if not hasattr(drawing, "poll") or drawing.poll(context):
             draw(drawing, record, context)
     draw(bpy.types.EIGENPARTS_MT_object, record, context)
@@ -153,7 +153,7 @@ def draw_preferences(preferences):
 def draw_options_of_operators():
     """Draw what operators show to be changed afterwards, once for each choice of each list."""
     record = Record()
-    for operator in _ours(bpy.types.Operator):
+    for operator in registered(bpy.types.Operator):
         if not hasattr(operator, "draw"):
             continue
         rna = Button(operator.bl_idname).bl_rna
@@ -183,7 +183,7 @@ def _stand_in(drawing):
     return type(drawing.__name__, (SimpleNamespace, *of_python[:-1]), values)
 
 
-def _ours(kind):
+def registered(kind):
     """Return the registered classes of a kind that are ours."""
     return [one for one in kind.__subclasses__() if one.__module__.startswith("eigenparts") and one.is_registered]
 

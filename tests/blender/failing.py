@@ -68,8 +68,13 @@ def fails_at_every_call(monkeypatch, writer, call, unchanged, error=MemoryError)
 
 
 def plain(value):
+    """Return a custom property as values that can be compared."""
+    if isinstance(value, bpy.types.ID):
+        return type(value).__name__, value.name_full
     if hasattr(value, "to_dict"):
         return {name: plain(value[name]) for name in sorted(value.keys())}
+    if isinstance(value, list):
+        return [plain(item) for item in value]
     return list(value) if hasattr(value, "typecode") else value
 
 

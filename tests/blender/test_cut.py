@@ -279,3 +279,14 @@ def test_existing_edges_make_shorter_borders_and_no_geometry(quads):
     assert set(moved) == set(labels)
     assert border_length(mesh, moved) < before
     assert (moved != labels).mean() < 0.2
+
+
+def test_a_cut_that_is_refused_does_not_touch_the_faces(analyzed):
+    twin = analyzed.copy()
+    bpy.context.collection.objects.link(twin)
+    mesh = analyzed.data
+    for elements in (mesh.vertices, mesh.edges, mesh.polygons):
+        elements.foreach_set("select", np.arange(len(elements)) == 3)
+    with pytest.raises(RuntimeError, match="used 2 times"):
+        bpy.ops.eigenparts.cut()
+    assert [vertex.index for vertex in mesh.vertices if vertex.select] == [3]

@@ -1,7 +1,6 @@
 """What is stored on a mesh may be damaged in any way: every operator works or says so, and every panel draws."""
 
 import ast
-import re
 import sys
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from compute import TriangleMesh
 from tests.blender.conftest import add_object, everything_on
 from tests.blender.damage import ATTRIBUTE_DAMAGES, STATE, damage, damage_attribute, damages_of, own_attributes
 from tests.blender.drawn import draw_panels
+from tests.blender.pressed import press
 from tests.selection import draws
 from tests.shapes import joined
 
@@ -98,26 +98,6 @@ def stars_apart(small_star):
     assert len(obj.data.eigenparts.correction_rows) == 2
 
 
-@pytest.fixture
-def tracebacks(monkeypatch):
-    """What Python said in callbacks of properties, where Blender only prints it."""
-    told = []
-    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: told.append(repr(error)))
-    yield told
-    assert told == []
-
-
-def call(operator, **options):
-    """Call an operator; it may refuse in a sentence, but not break."""
-    sentence = ""
-    try:
-        getattr(bpy.ops.eigenparts, operator)(**options)
-    except RuntimeError as error:
-        sentence = str(error)
-    assert "Traceback" not in sentence, sentence
-    assert not sentence or ".poll()" in sentence or re.match(r"Error: .*[.!]\s*$", sentence, re.DOTALL), sentence
-
-
 def use_everything_that_reads(mesh):
     """Draw the panels, set every property and call every quick operator."""
     draw_panels()
@@ -143,7 +123,7 @@ def use_everything_that_reads(mesh):
         "copy_report": {},
         "select_part": {"part": 1},
     }.items():
-        call(operator, **options)
+        press(operator, **options)
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
     draw_panels()
@@ -203,7 +183,7 @@ def test_whatever_is_damaged_a_cut_works_or_refuses(corrected, method, traceback
     def check(one):
         mesh = take_a_copy(corrected, template)
         hurt(mesh, *one)
-        call("cut", method=method)
+        press("cut", method=method)
         assert not mesh.validate()
 
     check()
@@ -218,7 +198,7 @@ def test_whatever_is_damaged_parts_are_separated_or_left(divided, tracebacks, dr
     @given(st.sampled_from(all_damages(template)))
     def check(one):
         hurt(take_a_copy(divided, template), *one)
-        call("separate")
+        press("separate")
         for obj in set(bpy.data.objects) - {divided}:
             bpy.data.objects.remove(obj)
 
@@ -246,7 +226,7 @@ def test_whatever_is_damaged_longer_work_is_done_or_refused(registered, operator
     def check(one):
         hurt(take_a_copy(registered, template), *one)
         before = set(bpy.data.objects)
-        call(operator, **options)
+        press(operator, **options)
         for obj in set(bpy.data.objects) - before:
             bpy.data.objects.remove(obj)
 

@@ -1,5 +1,7 @@
 """Outputs: what the parts are written to follows the level, spares what is the user's, and can be taken back."""
 
+import time
+
 import bpy
 import numpy as np
 import pytest
@@ -171,6 +173,24 @@ def test_an_eigenfunction_attribute_of_the_user_is_not_overwritten(star_object):
     with pytest.raises(RuntimeError, match="not from Eigenparts"):
         bpy.ops.eigenparts.write_eigenfunctions()
     assert "eigenfunction_1" not in star_object.data.attributes
+
+
+def test_more_eigenfunctions_than_there_are_are_refused_at_once(star_object):
+    start = time.process_time()
+    with pytest.raises(RuntimeError, match="carries only"):
+        bpy.ops.eigenparts.write_eigenfunctions(n_functions=2**31 - 1)
+    assert time.process_time() - start < 10
+
+
+def test_the_group_that_is_active_stays_active(analyzed):
+    analyzed.vertex_groups.new(name="mine")
+    for outputs in ({"VERTEX_GROUPS"}, {"VERTEX_GROUPS", "FIELD"}, {"FIELD"}):
+        write(*outputs)
+        assert analyzed.vertex_groups.active.name == "mine"
+    write("VERTEX_GROUPS")
+    analyzed.vertex_groups.active = analyzed.vertex_groups["Part 1"]
+    bpy.ops.eigenparts.segment(level=1)
+    assert analyzed.vertex_groups.active.name == "Part 1"
 
 
 def test_every_output_has_a_tick_box_and_a_row_in_the_panel(analyzed, extension, monkeypatch):

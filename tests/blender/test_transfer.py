@@ -74,6 +74,13 @@ def test_weights_go_to_the_same_vertices_under_other_numbers(rest, bent):
         np.testing.assert_allclose(weights_of(bent, name), weights_of(rest, name)[order], atol=1e-4)
 
 
+def test_the_group_that_is_active_on_the_target_stays_active(rest, bent):
+    bent.vertex_groups.new(name="mine")
+    bpy.ops.eigenparts.transfer()
+    assert [group.name for group in bent.vertex_groups] == ["mine", "Upper", "Lower"]
+    assert bent.vertex_groups.active.name == "mine"
+
+
 def test_poses_with_the_same_faces_correspond_by_number():
     """Also where Blender splits a quad one way in one pose and the other way in the other."""
     character = hand(800)

@@ -1,7 +1,5 @@
 """Objects that are not plain: linked, shared, hidden, scaled to nothing, with shape keys, in other modes or scenes."""
 
-import sys
-
 import bpy
 import numpy as np
 import pytest
@@ -9,6 +7,7 @@ import pytest
 from tests.blender.conftest import add_object, values_of
 from tests.blender.drawn import draw_panels
 from tests.blender.failing import all_of
+from tests.blender.pressed import press
 
 QUICK = {
     "segment": {"level": 1},
@@ -28,24 +27,12 @@ ALL = {
 }
 
 
-@pytest.fixture(autouse=True)
-def tracebacks(monkeypatch):
-    """What Python said in callbacks of properties, where Blender only prints it."""
-    told = []
-    monkeypatch.setattr(sys, "excepthook", lambda kind, error, trace: told.append(repr(error)))
-    yield
-    assert told == []
+pytestmark = pytest.mark.usefixtures("tracebacks")
 
 
 def outcome_of(operator):
-    """Call an operator and return what it said if it refused; a traceback is none."""
-    sentence = ""
-    try:
-        getattr(bpy.ops.eigenparts, operator)(**ALL[operator])
-    except RuntimeError as error:
-        sentence = str(error)
-    assert "Traceback" not in sentence, sentence
-    return sentence
+    """Call an operator and return what it said if it refused."""
+    return press(operator, **ALL[operator]).sentence
 
 
 def link(path, overrides_mesh=False):
