@@ -124,7 +124,7 @@ class ProcessPool:
 
     def _start(self, unit: Unit) -> ChildProcess:
         share = str(max(1, (os.cpu_count() or 1) // self.n_processes))
-        environment = {**dict.fromkeys(THREAD_SETTINGS, share), **os.environ, SUPERVISED: "1"}
+        environment = {**dict.fromkeys(THREAD_SETTINGS, share), **os.environ, SUPERVISED: str(os.getpid())}
         numbering = [f"--first-free={self._first_free}"] if self._first_free else []
         return ChildProcess([*own_command(), *self.arguments, *numbering, *files_of(unit)], environment, self.folder)
 

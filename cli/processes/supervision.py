@@ -5,7 +5,7 @@ import os
 import signal
 import sys
 
-# Set in the environment of such a process.
+# Set in the environment of such a process: the number of the one that waits for it.
 SUPERVISED = "EIGENPARTS_SUPERVISED"
 # Of Linux's prctl: the signal that a process gets when the one that started it ends.
 SET_PARENT_DEATH_SIGNAL = 1
@@ -20,3 +20,6 @@ def end_with_parent() -> None:
     """Have the system end this process when the one that started it ends, where it can (Linux)."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(SET_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+        # It may have ended while this one was starting.
+        if os.getppid() != int(os.environ[SUPERVISED]):
+            os._exit(1)
