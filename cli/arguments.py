@@ -142,7 +142,7 @@ def _add_division(command: argparse.ArgumentParser) -> None:
 
 
 def _add_execution(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--output", metavar="DIR", type=Path, help="folder for results; otherwise beside each file")
+    command.add_argument("--output", metavar="DIR", type=_folder, help="folder for results; otherwise beside each file")
     command.add_argument(
         "--overwrite",
         action="store_true",
@@ -186,6 +186,13 @@ def _add_execution(command: argparse.ArgumentParser) -> None:
         type=shlex.split,
         help="what starts this command line on the machines of the cluster; otherwise the same as here",
     )
+
+
+def _folder(text: str) -> Path:
+    path = Path(text)
+    if not text or (path.exists() and not path.is_dir()):
+        raise argparse.ArgumentTypeError(f"must be a folder, or the name of a new one; {text!r} is none")
+    return path
 
 
 def _layers(text: str) -> list[str]:

@@ -29,7 +29,8 @@ def finished_reports(jobs: list[Job], settings: Settings) -> dict[Job, Report]:
 
 def _jobs_below(folder: Path, options: argparse.Namespace) -> Iterator[Job]:
     if not folder.is_dir():
-        raise Refusal(f"{folder}: there is no such folder.")
+        is_there = "it is a file; segment does single files." if folder.exists() else "there is no such folder."
+        raise Refusal(f"{folder}: {is_there}")
     for path in sorted(_visible_files(folder)):
         inside = path.relative_to(folder)
         if _is_wanted(path, inside, options.glob):

@@ -57,7 +57,7 @@ def _run_batch(options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
 
 
 def _report_all(reports: Iterable[Report], options: argparse.Namespace, out: TextIO, err: TextIO) -> int:
-    reporter, any_failed = reporter_for(options, out), False
+    reporter, any_failed = reporter_for(options, out, err), False
     for report in reports:
         if "error" in report:
             any_failed = True

@@ -17,6 +17,8 @@ from .results.digests import digest_of
 from .results.stages import check_room, remove_stale, stage_in
 from .results.targets import publish, refuse_before_work
 
+NO_FILE = "there is no such file."
+
 
 class Command(Protocol):
     """A command as it is done with each file."""
@@ -50,7 +52,7 @@ def _report(job: Job, command: Command) -> Report:
 
 def _do(job: Job, command: Command, start: float) -> Report:
     if not job.path.is_file():
-        raise Refusal("there is no such file.")
+        raise Refusal("it is a folder; batch does all files of folders." if job.path.is_dir() else NO_FILE)
     refuse_before_work(job)
     report: Report = {"file": str(job.path), "digest": digest_of(job.path), "settings": command.settings}
     file, report["objects"] = command.open_and_process(job.path)

@@ -129,8 +129,13 @@ def as_document(reports: list[Report]) -> str:
 def sentence(report: Report) -> str:
     """Return a line for people about a file that went well."""
     counts = ", ".join(_counts(row) for row in report["objects"] if "error" not in row)
-    warnings = "".join(f"; {warning}" for warning in report.get("warnings", []))
-    return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}{warnings}"
+    return f"{report['file']}: {counts}, {report['seconds']:.1f} s, written to {report['output']}"
+
+
+def warnings_in(report: Report) -> list[str]:
+    """Return a line for each warning about a file and its objects."""
+    of_objects = [f"{row['name']}: {text}" for row in report.get("objects", []) for text in row.get("warnings", [])]
+    return [*report.get("warnings", []), *of_objects]
 
 
 def _counts(row: ObjectRow) -> str:

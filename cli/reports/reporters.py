@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import Protocol, TextIO
 
-from .report import Report, as_document, as_line, sentence
+from .report import Report, as_document, as_line, sentence, warnings_in
 
 # Seconds between lines about progress where they cannot replace each other.
 PAUSE = 10.0
@@ -22,14 +22,17 @@ class Reporter(Protocol):
 
 
 class Sentences:
-    """A line for each file that was divided."""
+    """A line for each file that was divided, and one on stderr for each of its warnings."""
 
-    def __init__(self, out: TextIO) -> None:
-        self._out = out
+    def __init__(self, out: TextIO, err: TextIO) -> None:
+        self._out, self._err = out, err
 
     def add(self, report: Report) -> None:
-        """Write the line."""
-        if "error" not in report and "skipped" not in report:
+        """Write the lines."""
+        if "skipped" in report:
+            return
+        self._err.writelines(f"{report['file']}: {warning}\n" for warning in warnings_in(report))
+        if "error" not in report:
             self._out.write(sentence(report) + "\n")
             self._out.flush()
 
@@ -112,11 +115,11 @@ class ProgressLine:
         return f"{text}, {_duration(seconds)}" if self._n_done else text
 
 
-def reporter_for(options: argparse.Namespace, out: TextIO) -> Reporter:
+def reporter_for(options: argparse.Namespace, out: TextIO, err: TextIO) -> Reporter:
     """Return what the options ask for."""
     if options.json:
         return JsonDocument(out)
-    return JsonLines(out) if options.json_lines else Sentences(out)
+    return JsonLines(out) if options.json_lines else Sentences(out, err)
 
 
 def _duration(seconds: float) -> str:

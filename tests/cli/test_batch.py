@@ -174,6 +174,11 @@ def test_an_empty_folder_is_told(run, tmp_path):
     assert "no such folder" in run("batch", tmp_path / "missing")[2][0]
 
 
+def test_a_file_in_place_of_a_folder_is_told(run, star_off, tmp_path):
+    assert run("batch", star_off)[2] == [f"{star_off}: it is a file; segment does single files."]
+    assert run("segment", tmp_path)[2] == [f"{tmp_path}: it is a folder; batch does all files of folders."]
+
+
 def test_a_file_of_the_user_that_is_called_like_a_result_is_a_source(run, folder):
     mine = write_off(star(6, 2), folder / "a_parts.off")
     before = mine.read_bytes()
@@ -202,9 +207,9 @@ def test_a_damaged_report_costs_no_more_than_doing_its_file_again(run, folder, t
     run("batch", folder)
     before = results_in(folder)
     (folder / "a_parts.off.json").write_text(text)
-    code, lines, _ = run("batch", folder)
+    code, lines, told = run("batch", folder)
     assert (code, len(lines), results_in(folder)) == (0, 1, before)
-    assert lines[0].endswith(f"; {folder / 'a_parts.off.json'} is no report, and stays as it is")
+    assert f"{folder / 'a.off'}: {folder / 'a_parts.off.json'} is no report, and stays as it is" in told
 
 
 def test_one_folder_under_several_names_is_one(run, folder, tmp_path):

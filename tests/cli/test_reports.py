@@ -25,10 +25,11 @@ def cli():
     return {name.rpartition(".")[2]: import_module(f"eigenparts.cli.{name}") for name in names}
 
 
-def told(cli, options, reports):
+def told(cli, options, reports, err=None):
     """Return what stands on stdout after each report, and at the end."""
     out, steps = io.StringIO(), []
-    reporter = cli["reporters"].reporter_for(cli["arguments"].parse(["segment", "star.off", *options]), out)
+    chosen = cli["arguments"].parse(["segment", "star.off", *options])
+    reporter = cli["reporters"].reporter_for(chosen, out, err or io.StringIO())
     for report in reports:
         reporter.add(report)
         steps.append(out.getvalue())
@@ -40,6 +41,15 @@ def test_people_read_a_sentence_for_each_file_that_went_well(cli):
     steps, text = told(cli, [], [DONE, FAILED, SKIPPED])
     assert text == "star.off: star: 3 parts, 1.3 s, written to star_parts.off\n"
     assert steps[0] == text
+
+
+def test_people_read_the_warnings_of_what_was_done_now(cli):
+    warned = DONE | {"warnings": ["kept."], "objects": [DONE["objects"][0] | {"warnings": ["2 points moved."]}]}
+    err = io.StringIO()
+    told(cli, [], [warned, warned | {"skipped": True}], err)
+    assert err.getvalue() == "star.off: kept.\nstar.off: star: 2 points moved.\n"
+    told(cli, ["--json"], [warned], err := io.StringIO())
+    assert err.getvalue() == ""
 
 
 def test_a_line_of_json_is_there_as_soon_as_its_file_is_done(cli):
