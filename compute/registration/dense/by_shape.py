@@ -10,6 +10,7 @@ from ...surface.mesh import Floats, Ints
 from ..eigenfunctions.spectral_shape import farthest_points
 from ..eigenfunctions.zoomout import nearest_rows
 from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
+from .flipped_regions import RoughMap, with_regions_unflipped
 from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, aligned
 from .point_map import DENSE_SAMPLES
 from .shape_pair import Image, ShapePair
@@ -30,8 +31,8 @@ DOUBTFUL_STRETCH = 2.5
 def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
     """Return the nearest points of the bent source to the vertices and to the middles of triangles of the target."""
     progress(0.0, "Mapping functions")
-    rough_places = _rough_places(pair)
-    bent_source = _bent_source(pair, rough_places, section(progress, 0.2, 0.8))
+    rough = _rough_map(pair)
+    bent_source = _bent_source(pair, rough, section(progress, 0.2, 0.8))
     progress(0.8, "Finding the nearest points")
     target, point = pair.target_shape, pair.target_points.point
     tree = SurfaceTree(bent_source, pair.source_shape.triangles, LANDING_TURN, WRONG_SIDE)
@@ -41,29 +42,31 @@ def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
     return Image(points, _middle_triangles(pair, tree)[pair.target.surface.triangle_of_input], confidence)
 
 
-def _bent_source(pair: ShapePair, rough_places: Floats, progress: Progress) -> Floats:
-    """Return (n, 3) the points of the source's shape after it is bent onto the target from rough places (s, 3)."""
+def _bent_source(pair: ShapePair, rough: RoughMap, progress: Progress) -> Floats:
+    """Return (n, 3) the points of the source's shape after it is bent onto the target from a rough map."""
     source = pair.source_shape
     graph = deformation_graph(source, min(N_NODES, len(source.positions) // POINTS_OF_NODE))
-    motion = _first_motion(graph, pair.samples, rough_places)
-    samples = pair.samples[:N_SAMPLES]
+    motion = with_regions_unflipped(graph, _first_motion(graph, rough), rough)
+    samples = rough.samples[:N_SAMPLES]
     motion = aligned(graph, motion, samples, source.normals[samples], pair.target_shape, progress)
     return warped(graph, motion)
 
 
-def _rough_places(pair: ShapePair) -> Floats:
-    """Return (s, 3) the places on the target to which the functional map brings the samples of the source."""
-    target_samples = farthest_points(pair.target_shape.positions, DENSE_SAMPLES)
+def _rough_map(pair: ShapePair) -> RoughMap:
+    """Return where the functional map brings the samples of the source."""
+    source, target = pair.source_shape, pair.target_shape
+    target_samples = farthest_points(target.positions, DENSE_SAMPLES)
     source_rows, target_rows = pair.embedded(pair.samples, target_samples)
-    return pair.target_shape.positions[target_samples[nearest_rows(source_rows, target_rows)]]
+    point = target_samples[nearest_rows(source_rows, target_rows)]
+    return RoughMap(pair.samples, source.normals[pair.samples], target.positions[point], target.normals[point])
 
 
-def _first_motion(graph: DeformationGraph, samples: Ints, places: Floats) -> Motion:
-    """Return the motion that shifts each node by the mean of the shifts that bring samples around it to places."""
-    weights, node = graph.weights[samples], graph.followed[samples]
+def _first_motion(graph: DeformationGraph, rough: RoughMap) -> Motion:
+    """Return the motion that shifts each node by the mean of the shifts of the samples around it."""
+    weights, node = graph.weights[rough.samples], graph.followed[rough.samples]
     n_nodes = len(graph.nodes)
     total = np.bincount(node.ravel(), weights.ravel(), n_nodes)
-    shift = np.repeat(places - graph.points[samples], node.shape[1], axis=0) * weights.ravel()[:, None]
+    shift = np.repeat(rough.places - graph.points[rough.samples], node.shape[1], axis=0) * weights.ravel()[:, None]
     sums = np.stack([np.bincount(node.ravel(), column, n_nodes) for column in shift.T], axis=1)
     return motion_towards(graph, graph.nodes + sums / np.maximum(total, 1e-9)[:, None])
 

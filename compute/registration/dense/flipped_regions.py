@@ -1,0 +1,114 @@
+"""Regions that a rough map of points turns inside out, such as a head whose left it takes for its right.
+
+The functions of a nearly round part that is symmetric by itself do not know its sides: a functional map can take the
+part for its mirror image while the rest of the shape is right. The surface then turns over between the two, which no
+rigid motion of nodes can follow. Such a region goes on from what surrounds it instead, as if it were rigid.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+from scipy.sparse.csgraph import connected_components
+
+from ...surface.mesh import Bools, Floats, Ints
+from .deformation_graph import DeformationGraph, Motion, nearest_rotations
+from .surface_points import unit_rows
+
+# A map is 1 where it is a similarity that keeps the sides, -1 where it is a reflection, near 0 where it is blurred.
+# A region has nodes below the first number and reaches as far as they are below the second.
+FLIPPED, UNCLEAR = -0.3, 0.3
+# Rounds in which the orientations of neighbouring nodes are averaged.
+AVERAGED = 2
+# Rings of nodes around a region that move with it, since they lie in the twist, and those beyond that tell its motion.
+TWISTED, TELLING = 1, 3
+# Fewer nodes tell no motion; a region of more than this share of all nodes has no surroundings to go on from.
+FEWEST_NODES, LARGEST_SHARE = 4, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class RoughMap:
+    """Where samples of one shape come to lie on another.
+
+    Attributes
+    ----------
+    samples : (s,) int64
+        Points of a deformation graph.
+    sample_normals : (s, 3) float64
+        There, before any motion.
+    places, normals : (s, 3) float64
+        On the other shape.
+    """
+
+    samples: Ints
+    sample_normals: Floats
+    places: Floats
+    normals: Floats
+
+
+def with_regions_unflipped(graph: DeformationGraph, motion: Motion, rough: RoughMap) -> Motion:
+    """Return a motion in which regions that a rough map flips go on rigidly from the nodes around them."""
+    orientation = node_orientations(graph, rough)
+    rotations, shifts = motion.rotations.copy(), motion.shifts.copy()
+    for region in _flipped_regions(graph, orientation):
+        moved = _grown(graph, region, TWISTED)
+        around = _grown(graph, moved, TELLING) & ~moved & (orientation >= UNCLEAR)
+        if around.sum() >= FEWEST_NODES:
+            rotation, shift = _rigid_motion(graph.nodes[around], motion.shifts[around])
+            rotations[moved] = rotation
+            shifts[moved] = graph.nodes[moved] @ rotation.T + shift - graph.nodes[moved]
+    return Motion(rotations, shifts)
+
+
+def node_orientations(graph: DeformationGraph, rough: RoughMap) -> Floats:
+    """Return (m,) from -1 to 1 whether a rough map keeps or reverses the sides around each node."""
+    followed, weights = graph.followed[rough.samples], graph.weights[rough.samples]
+    sample = np.repeat(np.arange(len(followed)), followed.shape[1])
+    shape = (len(graph.nodes), len(followed))
+    around: csr_array = coo_array((weights.ravel(), (followed.ravel(), sample)), shape=shape).tocsr()
+    places, points = rough.places, graph.points[rough.samples]
+    total = np.maximum(around.sum(axis=1), np.finfo(float).tiny)[:, None]
+    products = (around @ (places[:, :, None] * points[:, None, :]).reshape(-1, 9)) / total
+    products = products.reshape(-1, 3, 3) - ((around @ places) / total)[:, :, None] * ((around @ points) / total)[:, None]
+    normals, other_normals = unit_rows(around @ rough.sample_normals), unit_rows(around @ rough.normals)
+    # A direction across the normal, from the axis that is least along it.
+    first = unit_rows(np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)]))
+    first, second = (np.einsum("nij,nj->ni", products, axis) for axis in (first, np.cross(normals, first)))
+    lengths = (first**2).sum(axis=1) + (second**2).sum(axis=1)
+    turned = 2 * (np.cross(first, second) * other_normals).sum(axis=1) / np.maximum(lengths, np.finfo(float).tiny)
+    return _averaged(graph, turned)
+
+
+def _averaged(graph: DeformationGraph, values: Floats) -> Floats:
+    start, stop = graph.edges.T
+    n_nodes = len(values)
+    for _ in range(AVERAGED):
+        values = (np.bincount(start, values[stop], n_nodes) + values) / (np.bincount(start, minlength=n_nodes) + 1)
+    return values
+
+
+def _flipped_regions(graph: DeformationGraph, orientation: Floats) -> list[Bools]:
+    """Return the masks (m,) of the connected regions that are flipped."""
+    n_nodes = len(orientation)
+    low = orientation < UNCLEAR
+    pairs = graph.edges[low[graph.edges].all(axis=1)]
+    joined = coo_array((np.ones(len(pairs), dtype=bool), (pairs[:, 0], pairs[:, 1])), shape=(n_nodes, n_nodes))
+    region = connected_components(joined, directed=False)[1]
+    masks = [region == number for number in np.unique(region[orientation < FLIPPED]).tolist()]
+    return [mask for mask in masks if FEWEST_NODES <= mask.sum() <= LARGEST_SHARE * n_nodes]
+
+
+def _grown(graph: DeformationGraph, mask: Bools, n_rings: int) -> Bools:
+    """Return the mask with so many rings of nodes around it."""
+    start, stop = graph.edges.T
+    for _ in range(n_rings):
+        mask = mask.copy()
+        mask[stop[mask[start]]] = True
+    return mask
+
+
+def _rigid_motion(nodes: Floats, shifts: Floats) -> tuple[Floats, Floats]:
+    """Return the rotation (3, 3) and the shift (3,) that bring nodes nearest to where shifts bring them."""
+    middle, moved = nodes.mean(axis=0), (nodes + shifts).mean(axis=0)
+    rotation = nearest_rotations(((nodes - middle).T @ (nodes + shifts - moved))[None])[0]
+    return rotation, moved - rotation @ middle
