@@ -41,12 +41,9 @@ def inner_walls(mesh: TriangleMesh) -> Bools:
     return hidden & _is_inner(mesh, hidden, piece)[piece]
 
 
-def inner_vertices(mesh: TriangleMesh, inner: Bools) -> Bools:
+def inner_vertices(triangles: Ints, is_inner: Bools, n_vertices: int) -> Bools:
     """Return (V,) the mask of the vertices that have inner triangles (T,) around them and no others."""
-    n_vertices = len(mesh.vertices)
-    around, outer = (
-        np.bincount(rows.ravel(), minlength=n_vertices) for rows in (mesh.triangles, mesh.triangles[~inner])
-    )
+    around, outer = (np.bincount(rows.ravel(), minlength=n_vertices) for rows in (triangles, triangles[~is_inner]))
     return (around > 0) & (outer == 0)
 
 

@@ -9,9 +9,10 @@ from ...progress import Progress, section
 from ...surface.mesh import Floats, Ints
 from ..eigenfunctions.spectral_shape import farthest_points
 from ..eigenfunctions.zoomout import nearest_rows
+from .confidence import Landing, landing_confidence
 from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
 from .flipped_regions import RoughMap, with_regions_unflipped
-from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, aligned
+from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, Samples, aligned
 from .point_map import DENSE_SAMPLES
 from .shape_pair import Image, ShapePair
 from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles, unit_rows
@@ -23,9 +24,6 @@ N_SAMPLES = 2000
 # When the shapes lie on one another: candidates for the nearest point, and the distance on a surface of area 1 that a
 # turn of the normal counts as.
 LANDING_CANDIDATES, LANDING_TURN = 16, 0.005
-# A gap of this size between the shapes, on a surface of area 1, halves the confidence; so does this stretch of an edge.
-DOUBTFUL_GAP = 0.02
-DOUBTFUL_STRETCH = 2.5
 
 
 def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
@@ -34,12 +32,14 @@ def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
     rough = _rough_map(pair)
     bent_source = _bent_source(pair, rough, section(progress, 0.2, 0.8))
     progress(0.8, "Finding the nearest points")
+    tree = SurfaceTree(bent_source, pair.source_shape.triangles, LANDING_TURN, WRONG_SIDE, pair.source_walls.triangles)
     target, point = pair.target_shape, pair.target_points.point
-    tree = SurfaceTree(bent_source, pair.source_shape.triangles, LANDING_TURN, WRONG_SIDE)
-    net_points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES)
-    points = _on_input(pair, net_points)
-    confidence = np.where(pair.target_points.is_analyzed, _confidence(pair, points, gaps), 0.0)
-    return Image(points, _middle_triangles(pair, tree)[pair.target.surface.triangle_of_input], confidence)
+    is_inner = pair.target_walls.points[point]
+    net_points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES, is_inner)
+    landing = Landing(net_points, gaps, pair.source_walls.triangles[net_points.triangles] != is_inner)
+    confidence = np.where(pair.target_points.is_analyzed, landing_confidence(pair, landing), 0.0)
+    triangles = _middle_triangles(pair, tree)[pair.target.surface.triangle_of_input]
+    return Image(_on_input(pair, net_points), triangles, confidence)
 
 
 def _bent_source(pair: ShapePair, rough: RoughMap, progress: Progress) -> Floats:
@@ -47,9 +47,8 @@ def _bent_source(pair: ShapePair, rough: RoughMap, progress: Progress) -> Floats
     source = pair.source_shape
     graph = deformation_graph(source, min(N_NODES, len(source.positions) // POINTS_OF_NODE))
     motion = with_regions_unflipped(graph, _first_motion(graph, rough), rough)
-    samples = rough.samples[:N_SAMPLES]
-    motion = aligned(graph, motion, samples, source.normals[samples], pair.target_shape, progress)
-    return warped(graph, motion)
+    samples, is_inner = rough.samples.first(N_SAMPLES), pair.target_walls.triangles
+    return warped(graph, aligned(graph, motion, samples, pair.target_shape, is_inner, progress))
 
 
 def _rough_map(pair: ShapePair) -> RoughMap:
@@ -58,15 +57,16 @@ def _rough_map(pair: ShapePair) -> RoughMap:
     target_samples = farthest_points(target.positions, DENSE_SAMPLES)
     source_rows, target_rows = pair.embedded(pair.samples, target_samples)
     point = target_samples[nearest_rows(source_rows, target_rows)]
-    return RoughMap(pair.samples, source.normals[pair.samples], target.positions[point], target.normals[point])
+    samples = Samples(pair.samples, source.normals[pair.samples], pair.source_walls.points[pair.samples])
+    return RoughMap(samples, target.positions[point], target.normals[point])
 
 
 def _first_motion(graph: DeformationGraph, rough: RoughMap) -> Motion:
     """Return the motion that shifts each node by the mean of the shifts of the samples around it."""
-    weights, node = graph.weights[rough.samples], graph.followed[rough.samples]
+    weights, node = graph.weights[rough.samples.points], graph.followed[rough.samples.points]
     n_nodes = len(graph.nodes)
     total = np.bincount(node.ravel(), weights.ravel(), n_nodes)
-    shift = np.repeat(rough.places - graph.points[rough.samples], node.shape[1], axis=0) * weights.ravel()[:, None]
+    shift = np.repeat(rough.places - graph.points[rough.samples.points], node.shape[1], axis=0) * weights.ravel()[:, None]
     sums = np.stack([np.bincount(node.ravel(), column, n_nodes) for column in shift.T], axis=1)
     return motion_towards(graph, graph.nodes + sums / np.maximum(total, 1e-9)[:, None])
 
@@ -86,26 +86,6 @@ def _middle_triangles(pair: ShapePair, tree: SurfaceTree) -> Ints:
     target = pair.target_shape
     corners = pair.target_points.point[pair.target.surface.mesh.triangles]
     normals = unit_rows(target.normals[corners].mean(axis=1))
-    nearest, _ = tree.nearest(target.positions[corners].mean(axis=1), normals, CANDIDATES)
+    places, is_inner = target.positions[corners].mean(axis=1), pair.target_walls.of_surface
+    nearest, _ = tree.nearest(places, normals, CANDIDATES, is_inner)
     return pair.source_shape.input_triangle[nearest.triangles]
-
-
-def _confidence(pair: ShapePair, points: SurfacePoints, gaps: Floats) -> Floats:
-    """Return (Vt,) from the gap to the bent source, and from how much the edges around a vertex are stretched."""
-    source, target, row = pair.source.mesh, pair.target.surface.mesh, pair.target_points.point
-    places = points.blend(source.vertices, source.triangles) / np.sqrt(pair.source.surface.mesh.areas.sum())
-    ends = target.edges.vertices
-    source_length, target_length = (
-        np.bincount(ends.ravel(), np.repeat(_lengths(positions, ends), 2), len(row))
-        for positions in (places, pair.target_shape.positions[row])
-    )
-    tiny = np.finfo(float).tiny
-    stretch = np.abs(np.log(np.maximum(source_length, tiny) / np.maximum(target_length, tiny)))
-    stretch = np.where(target_length > 0, stretch / np.log(DOUBTFUL_STRETCH), 0.0)
-    confidence = 1 / (1 + (gaps / DOUBTFUL_GAP) ** 2 + stretch**4)
-    # Doubles of a vertex share its edges.
-    return confidence[pair.target.surface.vertex_of_input]
-
-
-def _lengths(positions: Floats, ends: Ints) -> Floats:
-    return np.linalg.norm(positions[ends[:, 0]] - positions[ends[:, 1]], axis=1)

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...surface.mesh import Bools, Floats, Ints
 from .deformation_graph import DeformationGraph, Motion, nearest_rotations
+from .nonrigid_alignment import Samples
 from .surface_points import unit_rows
 
 # A map is 1 where it is a similarity that keeps the sides, -1 where it is a reflection, near 0 where it is blurred.
@@ -32,16 +33,13 @@ class RoughMap:
 
     Attributes
     ----------
-    samples : (s,) int64
+    samples : Samples
         Points of a deformation graph.
-    sample_normals : (s, 3) float64
-        There, before any motion.
     places, normals : (s, 3) float64
         On the other shape.
     """
 
-    samples: Ints
-    sample_normals: Floats
+    samples: Samples
     places: Floats
     normals: Floats
 
@@ -62,15 +60,15 @@ def with_regions_unflipped(graph: DeformationGraph, motion: Motion, rough: Rough
 
 def node_orientations(graph: DeformationGraph, rough: RoughMap) -> Floats:
     """Return (m,) from -1 to 1 whether a rough map keeps or reverses the sides around each node."""
-    followed, weights = graph.followed[rough.samples], graph.weights[rough.samples]
+    followed, weights = graph.followed[rough.samples.points], graph.weights[rough.samples.points]
     sample = np.repeat(np.arange(len(followed)), followed.shape[1])
     shape = (len(graph.nodes), len(followed))
     around: csr_array = coo_array((weights.ravel(), (followed.ravel(), sample)), shape=shape).tocsr()
-    places, points = rough.places, graph.points[rough.samples]
+    places, points = rough.places, graph.points[rough.samples.points]
     total = np.maximum(around.sum(axis=1), np.finfo(float).tiny)[:, None]
     products = (around @ (places[:, :, None] * points[:, None, :]).reshape(-1, 9)) / total
     products = products.reshape(-1, 3, 3) - ((around @ places) / total)[:, :, None] * ((around @ points) / total)[:, None]
-    normals, other_normals = unit_rows(around @ rough.sample_normals), unit_rows(around @ rough.normals)
+    normals, other_normals = unit_rows(around @ rough.samples.normals), unit_rows(around @ rough.normals)
     # A direction across the normal, from the axis that is least along it.
     first = unit_rows(np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)]))
     first, second = (np.einsum("nij,nj->ni", products, axis) for axis in (first, np.cross(normals, first)))
