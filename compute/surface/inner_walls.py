@@ -14,8 +14,8 @@ from .orientation import outward_triangles
 
 # Axes along which a mesh is looked at, from both ends; points on it that hide others, and those in a cell of a picture.
 N_AXES = 24
-N_BLOCKERS = 60_000
-BLOCKERS_OF_CELL = 3.0
+N_BLOCKERS = 80_000
+BLOCKERS_OF_CELL = 5.0
 # Triangles that are seen under a smaller cosine are left out: their depth changes too much within a cell.
 LEAST_COSINE = 0.5
 # How far behind the front, in cells, a triangle is still at the front.
@@ -26,6 +26,8 @@ HIDDEN = 0.1
 LEAST_HOLLOW = 0.06
 # Narrow slits enclose little. The border of a flat disc is 3.5 roots of its area long, that of a deep slit less.
 LONGEST_OPENING = 2.5
+# What is closed but for this many roots of its area is a shell.
+LONGEST_GAP = 0.5
 
 
 def inner_walls(mesh: TriangleMesh) -> Bools:
@@ -147,7 +149,7 @@ def _is_inner(mesh: TriangleMesh, hidden: Bools, piece: Ints) -> Bools:
     hollow = -sum_by(piece, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, n_pieces)
     side = np.sqrt(sum_by(piece, mesh.areas, n_pieces))
     is_slit = (hollow > 0) & (opening < LONGEST_OPENING * side)
-    return is_slit | (hollow > LEAST_HOLLOW * side**3) | (opening == 0)
+    return is_slit | (hollow > LEAST_HOLLOW * side**3) | (opening <= LONGEST_GAP * side)
 
 
 def _unit_normals(corners: Floats) -> Floats:

@@ -13,6 +13,7 @@ from ... import compute
 from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data.mesh_arrays import MeshArrays
+from ..mesh_state.part_table import PartTable
 from ..messages.user_errors import Refusal, in_name_of
 from ..registration.match_options import MatchOptions
 from . import layers
@@ -22,6 +23,8 @@ from .layers import Layer
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
 # Vertices of all maps that are kept; each takes a tenth of a kB.
 RECENT_VERTICES = 200_000
+# Parts of which no larger share than this is unsure are not named.
+FEW_UNSURE = 0.05
 # A matching this unsure is none.
 NO_MATCH = 0.03
 NOT_ALIKE = (
@@ -30,6 +33,22 @@ NOT_ALIKE = (
 )
 
 _recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeParts:
+    """The parts that a mesh shows.
+
+    Attributes
+    ----------
+    of_polygon : (F,) int32
+        Number of the part of each face.
+    table : PartTable
+        Their names.
+    """
+
+    of_polygon: NDArray[np.int32]
+    table: PartTable
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +66,7 @@ class TransferShape:
         Vertex and face of each corner.
     options : MatchOptions
         How a target is matched with the source.
+    parts : ShapeParts, optional
     """
 
     name: str
@@ -55,6 +75,7 @@ class TransferShape:
     corner_vertex: NDArray[np.int64]
     corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
+    parts: ShapeParts | None = None
 
     @property
     def mesh(self) -> compute.TriangleMesh:
@@ -83,6 +104,9 @@ class MappedLayers:
         "number", "faces" or "shape".
     confidence : float
         Of the matching.
+    unsure_parts : dict of str to float
+        The share of its vertices that is unsure, for each part of the target, or of the source if the target has none,
+        where it is more than `FEW_UNSURE`; the largest first.
     torn_seams : tuple of str
         Layers whose seams could not be kept.
     warnings : tuple of str
@@ -93,6 +117,7 @@ class MappedLayers:
     is_sure: NDArray[np.bool_]
     found_by: str
     confidence: float
+    unsure_parts: Mapping[str, float]
     torn_seams: tuple[str, ...]
     warnings: tuple[str, ...] = ()
 
@@ -210,12 +235,28 @@ def _mapped(
         is_sure=correspondence.is_sure,
         found_by=correspondence.found_by,
         confidence=float(correspondence.matching.confidence),
+        unsure_parts=_unsure_parts(mapper, source, target, ~correspondence.is_sure),
         torn_seams=tuple(mapper.torn_seams),
         warnings=(
             *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
             *(f"{target.name}: {warning}" for warning in shape_map.target_warnings),
         ),
     )
+
+
+def _unsure_parts(
+    mapper: _LayerMapper, source: TransferShape, target: TransferShape, is_unsure: NDArray[np.bool_]
+) -> dict[str, float]:
+    parts = target.parts or source.parts
+    if parts is None or not is_unsure.any():
+        return {}
+    of_polygon = parts.of_polygon if parts is target.parts else mapper.faces(parts.of_polygon)
+    of_corner, vertex = of_polygon[target.corner_polygon], target.corner_vertex
+    part, first = np.unique(of_corner.astype(np.int64) * len(is_unsure) + vertex, return_index=True)
+    part, unsure = part // len(is_unsure), is_unsure[vertex[first]]
+    share = np.bincount(part, unsure) / np.maximum(np.bincount(part), 1)
+    unsure_parts = [int(number) for number in np.argsort(-share, kind="stable") if share[number] > FEW_UNSURE]
+    return {parts.table.name_of(number): float(share[number]) for number in unsure_parts}
 
 
 def _filled(correspondence: compute.Correspondence, mesh: compute.TriangleMesh, layer: Layer) -> Layer:
@@ -245,9 +286,9 @@ class _LayerMapper:
             return layer.with_values(moved)
         if layer.kind == layers.CORNER:
             return layer.with_values(self._corners(layer))
-        return layer.with_values(self._faces(layer.values))
+        return layer.with_values(self.faces(layer.values))
 
-    def _faces(self, values: NDArray[Any]) -> NDArray[Any]:
+    def faces(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return for each face what most of its area has on the source."""
         kinds, kind = np.unique(values, axis=0, return_inverse=True)
         labels = self._correspondence.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])
