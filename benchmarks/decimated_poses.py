@@ -1,8 +1,8 @@
 """Heads of characters that were decimated in another pose, the last table of `benchmarks.transfer`.
 
 The source is the character at rest, the targets are all its poses with 35 % and 25 % of their triangles. Distances are
-straight ones at rest, in hundredths of the root of the area (1 is about 1.3 cm on a grown-up). A vertex is wrong if it is
-more than `WRONG` off, and right if it is less than `RIGHT` off.
+straight ones at rest, in hundredths of the root of the area (1 is about 1.3 cm on a grown-up). A vertex is wrong if it
+is more than `WRONG` off, and right if it is less than `RIGHT` off.
 """
 
 import time
@@ -86,8 +86,8 @@ def _outcome(source: Copy, target: Copy, kind: str, is_head: Bools) -> HeadOutco
 def head_table(outcomes: list[HeadOutcome]) -> list[str]:
     """Return the Markdown table, a row for each family and share of triangles."""
     lines = [
-        "| family | triangles | poses | head off, mean | worst | rest off | head doubted | all doubted | sure and wrong "
-        "| doubted and right | CPU s |",
+        "| family | triangles | poses | head off, mean | worst | rest off | head doubted | all doubted "
+        "| sure and wrong | doubted and right | CPU s |",
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for family, kind in dict.fromkeys((one.family, one.kind) for one in outcomes):

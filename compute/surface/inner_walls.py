@@ -134,22 +134,26 @@ def _pieces(mesh: TriangleMesh, hidden: Bools) -> Ints:
 
 def _is_inner(mesh: TriangleMesh, hidden: Bools, piece: Ints) -> Bools:
     """Return for each piece whether it is a hidden shell or a pocket."""
-    n_pieces = int(piece.max()) + 1
-    pairs, shared = mesh.edges.neighbours, mesh.edges.shared
-    is_rim = hidden[pairs[:, 0]] != hidden[pairs[:, 1]]
-    ends = mesh.vertices[mesh.edges.vertices[shared[is_rim]]]
-    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    inside = np.where(hidden[pairs[is_rim, 0]], pairs[is_rim, 0], pairs[is_rim, 1])
-    opening = sum_by(piece[inside], lengths, n_pieces)
-    middle = np.stack(
-        [sum_by(piece[inside], lengths * column, n_pieces) for column in ends.mean(axis=1).T], axis=1
-    ) / np.maximum(opening, np.finfo(float).tiny)[:, None]
-    corners = mesh.vertices[outward_triangles(mesh)] - middle[piece][:, None]
-    a, b, c = corners.swapaxes(0, 1)
+    opening, middle = _openings(mesh, hidden, piece)
+    n_pieces = len(opening)
+    a, b, c = (mesh.vertices[outward_triangles(mesh)] - middle[piece][:, None]).swapaxes(0, 1)
+    # Cones from the middle of the opening over the triangles; the opening itself adds nothing.
     hollow = -sum_by(piece, np.einsum("ij,ij->i", a, np.cross(b, c)) / 6, n_pieces)
     side = np.sqrt(sum_by(piece, mesh.areas, n_pieces))
     is_slit = (hollow > 0) & (opening < LONGEST_OPENING * side)
     return is_slit | (hollow > LEAST_HOLLOW * side**3) | (opening <= LONGEST_GAP * side)
+
+
+def _openings(mesh: TriangleMesh, hidden: Bools, piece: Ints) -> tuple[Floats, Floats]:
+    """Return the length (P,) of the edges between each piece and what is not hidden, and their middle (P, 3)."""
+    pairs, n_pieces = mesh.edges.neighbours, int(piece.max()) + 1
+    is_rim = hidden[pairs[:, 0]] != hidden[pairs[:, 1]]
+    pairs, ends = pairs[is_rim], mesh.vertices[mesh.edges.vertices[mesh.edges.shared[is_rim]]]
+    of_edge = piece[np.where(hidden[pairs[:, 0]], pairs[:, 0], pairs[:, 1])]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    opening = sum_by(of_edge, lengths, n_pieces)
+    moments = np.stack([sum_by(of_edge, lengths * column, n_pieces) for column in ends.mean(axis=1).T], axis=1)
+    return opening, moments / np.maximum(opening, np.finfo(float).tiny)[:, None]
 
 
 def _unit_normals(corners: Floats) -> Floats:

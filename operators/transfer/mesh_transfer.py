@@ -142,7 +142,7 @@ def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: Ma
 
 
 def _parts_of(obj: bpy.types.Object) -> ShapeParts | None:
-    """Return the parts that an object shows; None if it has none, or they cannot be read, since they only name places."""
+    """Return the parts that an object shows; None if it has none, or none that can be read: they only name places."""
     try:
         return next((ShapeParts(parts.values[:, 0], read(mesh_of(obj)).parts) for parts in read_parts(obj)), None)
     except Refusal:

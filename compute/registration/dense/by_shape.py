@@ -63,10 +63,11 @@ def _rough_map(pair: ShapePair) -> RoughMap:
 
 def _first_motion(graph: DeformationGraph, rough: RoughMap) -> Motion:
     """Return the motion that shifts each node by the mean of the shifts of the samples around it."""
-    weights, node = graph.weights[rough.samples.points], graph.followed[rough.samples.points]
+    points = rough.samples.points
+    weights, node = graph.weights[points], graph.followed[points]
     n_nodes = len(graph.nodes)
     total = np.bincount(node.ravel(), weights.ravel(), n_nodes)
-    shift = np.repeat(rough.places - graph.points[rough.samples.points], node.shape[1], axis=0) * weights.ravel()[:, None]
+    shift = np.repeat(rough.places - graph.points[points], node.shape[1], axis=0) * weights.ravel()[:, None]
     sums = np.stack([np.bincount(node.ravel(), column, n_nodes) for column in shift.T], axis=1)
     return motion_towards(graph, graph.nodes + sums / np.maximum(total, 1e-9)[:, None])
 

@@ -16,7 +16,7 @@ SURE = 0.5
 DOUBTFUL_GAP = 0.02
 DOUBTFUL_STRETCH = 2.5
 DOUBTFUL_FLIPS = 0.5
-# Who has more than half of doubtful vertices around is doubted, too: a weighted mean over about this width on a surface of area 1.
+# Who has mostly doubtful vertices around is doubted, too: the mean over about this width on a surface of area 1.
 SURROUNDINGS = 0.2
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
-from ...surface.mesh import Bools, Floats, Ints
+from ...surface.mesh import Bools, Floats
 from .deformation_graph import DeformationGraph, Motion, nearest_rotations
 from .nonrigid_alignment import Samples
 from .surface_points import unit_rows
@@ -60,21 +60,27 @@ def with_regions_unflipped(graph: DeformationGraph, motion: Motion, rough: Rough
 
 def node_orientations(graph: DeformationGraph, rough: RoughMap) -> Floats:
     """Return (m,) from -1 to 1 whether a rough map keeps or reverses the sides around each node."""
-    followed, weights = graph.followed[rough.samples.points], graph.weights[rough.samples.points]
-    sample = np.repeat(np.arange(len(followed)), followed.shape[1])
-    shape = (len(graph.nodes), len(followed))
-    around: csr_array = coo_array((weights.ravel(), (followed.ravel(), sample)), shape=shape).tocsr()
-    places, points = rough.places, graph.points[rough.samples.points]
-    total = np.maximum(around.sum(axis=1), np.finfo(float).tiny)[:, None]
-    products = (around @ (places[:, :, None] * points[:, None, :]).reshape(-1, 9)) / total
-    products = products.reshape(-1, 3, 3) - ((around @ places) / total)[:, :, None] * ((around @ points) / total)[:, None]
+    around = _samples_around(graph, rough.samples)
+    points, places = graph.points[rough.samples.points], rough.places
+    mean_point, mean_place = around @ points, around @ places
+    products = (around @ (places[:, :, None] * points[:, None]).reshape(-1, 9)).reshape(-1, 3, 3)
+    products -= mean_place[:, :, None] * mean_point[:, None]
     normals, other_normals = unit_rows(around @ rough.samples.normals), unit_rows(around @ rough.normals)
-    # A direction across the normal, from the axis that is least along it.
-    first = unit_rows(np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)]))
-    first, second = (np.einsum("nij,nj->ni", products, axis) for axis in (first, np.cross(normals, first)))
-    lengths = (first**2).sum(axis=1) + (second**2).sum(axis=1)
-    turned = 2 * (np.cross(first, second) * other_normals).sum(axis=1) / np.maximum(lengths, np.finfo(float).tiny)
+    # Two directions along the surface, and where the map turns them.
+    along = unit_rows(np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)]))
+    first, second = (np.einsum("nij,nj->ni", products, axis) for axis in (along, np.cross(normals, along)))
+    size = ((first**2).sum(axis=1) + (second**2).sum(axis=1)) / 2
+    turned = (np.cross(first, second) * other_normals).sum(axis=1) / np.maximum(size, np.finfo(float).tiny)
     return _averaged(graph, turned)
+
+
+def _samples_around(graph: DeformationGraph, samples: Samples) -> csr_array:
+    """Return (m, s) the weights of the samples around each node, which sum to 1."""
+    followed, weights = graph.followed[samples.points], graph.weights[samples.points].ravel()
+    total = np.bincount(followed.ravel(), weights, len(graph.nodes))
+    weights = weights / np.maximum(total, np.finfo(float).tiny)[followed.ravel()]
+    sample = np.repeat(np.arange(len(followed)), followed.shape[1])
+    return coo_array((weights, (followed.ravel(), sample)), shape=(len(graph.nodes), len(followed))).tocsr()
 
 
 def _averaged(graph: DeformationGraph, values: Floats) -> Floats:
