@@ -4,8 +4,10 @@ import bpy
 import numpy as np
 import pytest
 
+from compute.surface.mesh import TriangleMesh
 from tests.cli.files import add_object, turned, write_blend, write_off
 from tests.compute.registration.shapes import lumpy_ball
+from tests.shapes import icosphere, joined
 
 
 @pytest.fixture
@@ -38,3 +40,17 @@ def test_what_the_source_does_not_have_is_an_error(run, weighted, tmp_path):
     assert (code, len(errors)) == (1, 1)
     assert "none of the layers" in errors[0]
     assert run("transfer", copy, "--source", weighted, "--layers", "dreams")[0] == 2
+
+
+def test_the_part_whose_vertices_are_unsure_is_named(run, weighted, tmp_path):
+    """Loose beads beside the highest lump are not analyzed, so what they get is unsure."""
+    assert run("segment", weighted)[0] == 0
+    beads = TriangleMesh(0.05 * icosphere(2).vertices + [0, 0, 2.3], icosphere(2).triangles)
+    copy = write_off(joined(turned(lumpy_ball(2)), beads), tmp_path / "copy.off")
+    source = tmp_path / "weighted_parts.blend"
+    code, report, errors = run("transfer", copy, "--source", source, "--layers", "groups", "--json")
+    (row,) = report["files"][0]["objects"]
+    ((part, share),) = row["unsure_parts"].items()
+    assert (code, row["unsure_vertices"]) == (0, len(beads.vertices))
+    assert 0.5 < share < 1
+    assert any(f"copy: {part}: {share:.0%} unsure." in error for error in errors)

@@ -3,13 +3,15 @@
 The functional map gives rough places first, in which neighbours stay neighbours but small things are blurred.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...progress import Progress, section
 from ...surface.mesh import Floats, Ints
 from ..eigenfunctions.spectral_shape import farthest_points
 from ..eigenfunctions.zoomout import nearest_rows
-from .confidence import Landing, landing_confidence
+from .confidence import SURE, Landing, landing_confidence
 from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
 from .flipped_regions import RoughMap, with_regions_unflipped
 from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, Samples, aligned
@@ -24,31 +26,58 @@ N_SAMPLES = 2000
 # When the shapes lie on one another: candidates for the nearest point, and the distance on a surface of area 1 that a
 # turn of the normal counts as.
 LANDING_CANDIDATES, LANDING_TURN = 16, 0.005
+# With no larger share of vertices in doubt no other start is tried.
+FEW_DOUBTS = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Bent:
+    """The source bent onto the target: where the target's vertices come to lie on it, and how far that is trusted."""
+
+    tree: SurfaceTree
+    points: SurfacePoints
+    confidence: Floats
 
 
 def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
     """Return the nearest points of the bent source to the vertices and to the middles of triangles of the target."""
     progress(0.0, "Mapping functions")
-    rough = _rough_map(pair)
-    bent_source = _bent_source(pair, rough, section(progress, 0.2, 0.8))
-    progress(0.8, "Finding the nearest points")
-    tree = SurfaceTree(bent_source, pair.source_shape.triangles, LANDING_TURN, WRONG_SIDE, pair.source_walls.triangles)
-    target, point = pair.target_shape, pair.target_points.point
-    is_inner = pair.target_walls.points[point]
-    net_points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES, is_inner)
-    landing = Landing(net_points, gaps, pair.source_walls.triangles[net_points.triangles] != is_inner)
-    confidence = np.where(pair.target_points.is_analyzed, landing_confidence(pair, landing), 0.0)
-    triangles = _middle_triangles(pair, tree)[pair.target.surface.triangle_of_input]
-    return Image(_on_input(pair, net_points), triangles, confidence)
-
-
-def _bent_source(pair: ShapePair, rough: RoughMap, progress: Progress) -> Floats:
-    """Return (n, 3) the points of the source's shape after it is bent onto the target from a rough map."""
-    source = pair.source_shape
+    rough, source = _rough_map(pair), pair.source_shape
     graph = deformation_graph(source, min(N_NODES, len(source.positions) // POINTS_OF_NODE))
-    motion = with_regions_unflipped(graph, _first_motion(graph, rough), rough)
-    samples, is_inner = rough.samples.first(N_SAMPLES), pair.target_walls.triangles
-    return warped(graph, aligned(graph, motion, samples, pair.target_shape, is_inner, progress))
+    best = _best_bent(pair, graph, rough, section(progress, 0.2, 0.9))
+    triangles = _middle_triangles(pair, best.tree)[pair.target.surface.triangle_of_input]
+    return Image(_on_input(pair, best.points), triangles, best.confidence)
+
+
+def _best_bent(pair: ShapePair, graph: DeformationGraph, rough: RoughMap, progress: Progress) -> Bent:
+    """Return the source bent from the first start that leaves little in doubt, or from the one that leaves least."""
+    starts = _starts(graph, rough)
+    tries: list[Bent] = []
+    for number, start in enumerate(starts):
+        step = section(progress, number / len(starts), (number + 1) / len(starts))
+        tries.append(_bent(pair, graph, start, rough.samples, step))
+        if (tries[-1].confidence < SURE).mean() <= FEW_DOUBTS:
+            break
+    return max(tries, key=lambda bent: float(bent.confidence.mean()))
+
+
+def _starts(graph: DeformationGraph, rough: RoughMap) -> list[Motion]:
+    """Return the motion of a rough map; before it, if regions are flipped in it, the one in which they are not."""
+    motion = _first_motion(graph, rough)
+    unflipped = with_regions_unflipped(graph, motion, rough)
+    return [motion] if unflipped is motion else [unflipped, motion]
+
+
+def _bent(pair: ShapePair, graph: DeformationGraph, start: Motion, samples: Samples, progress: Progress) -> Bent:
+    """Bend the source onto the target from a first motion, and let the vertices of the target land on it."""
+    source, target, point = pair.source_shape, pair.target_shape, pair.target_points.point
+    motion = aligned(graph, start, samples.first(N_SAMPLES), target, pair.target_walls.triangles, progress)
+    walls = pair.source_walls.triangles
+    tree = SurfaceTree(warped(graph, motion), source.triangles, LANDING_TURN, WRONG_SIDE, walls)
+    is_inner = pair.target_walls.points[point]
+    points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES, is_inner)
+    confidence = landing_confidence(pair, Landing(points, gaps, walls[points.triangles] != is_inner))
+    return Bent(tree, points, np.where(pair.target_points.is_analyzed, confidence, 0.0))
 
 
 def _rough_map(pair: ShapePair) -> RoughMap:

@@ -2,7 +2,8 @@
 
 The functions of a nearly round part that is symmetric by itself do not know its sides: a functional map can take the
 part for its mirror image while the rest of the shape is right. The surface then turns over between the two, which no
-rigid motion of nodes can follow. Such a region goes on from what surrounds it instead, as if it were rigid.
+rigid motion of nodes can follow. In such a region nodes change places with their mirror images: the pose stays, the
+sides are those of what surrounds it.
 """
 
 from dataclasses import dataclass
@@ -10,9 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
-from ...surface.mesh import Bools, Floats
-from .deformation_graph import DeformationGraph, Motion, nearest_rotations
+from ...surface.mesh import Bools, Floats, Ints
+from .deformation_graph import DeformationGraph, Motion, motion_towards
 from .nonrigid_alignment import Samples
 from .surface_points import unit_rows
 
@@ -21,10 +23,12 @@ from .surface_points import unit_rows
 FLIPPED, UNCLEAR = -0.3, 0.3
 # Rounds in which the orientations of neighbouring nodes are averaged.
 AVERAGED = 2
-# Rings of nodes around a region that move with it, since they lie in the twist, and those beyond that tell its motion.
+# Rings of nodes around a region that belong to it, since they lie in the twist, and those beyond that tell its sides.
 TWISTED, TELLING = 1, 3
-# Fewer nodes tell no motion; a region of more than this share of all nodes has no surroundings to go on from.
+# Fewer nodes tell no motion; a region of more than this share of all nodes has no surroundings to go by.
 FEWEST_NODES, LARGEST_SHARE = 4, 0.5
+# Rounds in which the plane of symmetry of a region is improved.
+PLANE_ROUNDS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,17 +49,36 @@ class RoughMap:
 
 
 def with_regions_unflipped(graph: DeformationGraph, motion: Motion, rough: RoughMap) -> Motion:
-    """Return a motion in which regions that a rough map flips go on rigidly from the nodes around them."""
+    """Return a motion in which the nodes of regions that a rough map flips have changed sides."""
     orientation = node_orientations(graph, rough)
-    rotations, shifts = motion.rotations.copy(), motion.shifts.copy()
+    places = graph.nodes + motion.shifts
     for region in _flipped_regions(graph, orientation):
-        moved = _grown(graph, region, TWISTED)
-        around = _grown(graph, moved, TELLING) & ~moved & (orientation >= UNCLEAR)
+        swapped = _grown(graph, region, TWISTED)
+        around = _grown(graph, swapped, TELLING) & ~swapped & (orientation >= UNCLEAR)
         if around.sum() >= FEWEST_NODES:
-            rotation, shift = _rigid_motion(graph.nodes[around], motion.shifts[around])
-            rotations[moved] = rotation
-            shifts[moved] = graph.nodes[moved] @ rotation.T + shift - graph.nodes[moved]
-    return Motion(rotations, shifts)
+            reflection = _nearest_rotation(graph.nodes[region], places[region], -1)
+            rotation = _nearest_rotation(graph.nodes[around], places[around], 1)
+            # What a reflection is before a rotation, if the region turns as its surroundings do: one in its own plane.
+            normal = np.linalg.eigh(reflection.T @ rotation + rotation.T @ reflection)[1][:, 0]
+            places[swapped] = places[swapped][_mirror_images(graph.nodes[swapped], normal)]
+    return motion_towards(graph, places) if (places != graph.nodes + motion.shifts).any() else motion
+
+
+def _nearest_rotation(points: Floats, places: Floats, determinant: int) -> Floats:
+    """Return the rotation (3, 3), or reflection for a determinant of -1, that turns points best as places are."""
+    left, _, right = np.linalg.svd((points - points.mean(axis=0)).T @ (places - places.mean(axis=0)))
+    left[:, 2] *= determinant * np.sign(np.linalg.det(left @ right))
+    return (left @ right).T
+
+
+def _mirror_images(points: Floats, normal: Floats) -> Ints:
+    """Return for each point the one nearest to its mirror image, in a plane of symmetry that looks about that way."""
+    tree, centred = cKDTree(points), points - points.mean(axis=0)
+    for _ in range(PLANE_ROUNDS):
+        image = tree.query(points - 2 * np.outer(centred @ normal, normal))[1]
+        between = points[image] - points
+        normal = np.linalg.eigh(between.T @ between)[1][:, -1]
+    return tree.query(points - 2 * np.outer(centred @ normal, normal))[1]
 
 
 def node_orientations(graph: DeformationGraph, rough: RoughMap) -> Floats:
@@ -109,10 +132,3 @@ def _grown(graph: DeformationGraph, mask: Bools, n_rings: int) -> Bools:
         mask = mask.copy()
         mask[stop[mask[start]]] = True
     return mask
-
-
-def _rigid_motion(nodes: Floats, shifts: Floats) -> tuple[Floats, Floats]:
-    """Return the rotation (3, 3) and the shift (3,) that bring nodes nearest to where shifts bring them."""
-    middle, moved = nodes.mean(axis=0), (nodes + shifts).mean(axis=0)
-    rotation = nearest_rotations(((nodes - middle).T @ (nodes + shifts - moved))[None])[0]
-    return rotation, moved - rotation @ middle
