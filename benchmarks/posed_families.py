@@ -87,10 +87,10 @@ def remeshed(mesh: TriangleMesh, n_vertices: int = REMESHED_VERTICES) -> Triangl
     return shuffled(_mesh_of(work))
 
 
-def decimated(mesh: TriangleMesh) -> TriangleMesh:
-    """Return the surface with fewer triangles, shuffled."""
+def decimated(mesh: TriangleMesh, share: float = DECIMATED_SHARE) -> TriangleMesh:
+    """Return the surface with a share of its triangles, shuffled."""
     work = _meshset(mesh)
-    target = int(DECIMATED_SHARE * len(mesh.triangles))
+    target = int(share * len(mesh.triangles))
     work.meshing_decimation_quadric_edge_collapse(targetfacenum=target, preservetopology=True)
     return shuffled(_mesh_of(work))
 

@@ -4,6 +4,7 @@ import pickle
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache as cache_result
+from functools import partial
 from hashlib import blake2b
 from pathlib import Path
 
@@ -24,6 +25,8 @@ COPIES: dict[str, Callable[[TriangleMesh], TriangleMesh]] = {
     "same": lambda mesh: mesh,
     "remeshed": remeshed,
     "decimated": decimated,
+    "35 %": partial(decimated, share=0.35),
+    "25 %": partial(decimated, share=0.25),
 }
 
 

@@ -1,4 +1,4 @@
-"""Transfer between posed characters: ``python -m benchmarks.transfer --data DIR [--pairs N] [--cache DIR]``.
+"""Transfer between posed characters: ``python -m benchmarks.transfer --data DIR [--pairs N] [--decimated]``.
 
 The source is a pose as it was made, the target another pose that was remeshed or decimated and shuffled. The truth is
 the connectivity that the poses share before remeshing; distances are taken along the rest pose, in hundredths of the
@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.decimated_poses import head_table, run_decimated
 from benchmarks.peers import is_installed, versions_of
 from benchmarks.posed_families import FAMILIES, Pose, SurfacePoints, closest_points, find_mirror, load_family
 from benchmarks.registration_peers import FIT, N_FUNCTIONS
@@ -217,18 +218,23 @@ def main() -> int:
     parser.add_argument("--cache", type=Path, default=Path(tempfile.gettempdir()) / "eigenparts-transfer")
     parser.add_argument("--pairs", type=int, default=1, help="of each family and kind of copy")
     parser.add_argument("--families", default=",".join(FAMILIES))
+    parser.add_argument("--decimated", action="store_true", help="all poses with 35 and 25 %% of their triangles, too")
     arguments = parser.parse_args()
     arguments.cache.mkdir(parents=True, exist_ok=True)
     sys.stdout.write(versions_of("numpy", "scipy", "pyfmaps", "pymeshlab") + "\n\n")
     outcomes: list[Outcome] = []
-    for family in arguments.families.split(","):
+    for family in filter(None, arguments.families.split(",")):
         outcomes += run_family(arguments.data, family, arguments.cache, arguments.pairs)
         for method in METHODS:
             some = [one for one in outcomes if one.family == family and one.method == method]
             if some:
                 sys.stdout.write(_row(family, method, some) + "\n")
         sys.stdout.flush()
-    sys.stdout.write("\n" + "\n".join(table(outcomes)) + "\n")
+    if outcomes:
+        sys.stdout.write("\n" + "\n".join(table(outcomes)) + "\n")
+    if arguments.decimated:
+        heads = list(run_decimated(arguments.data, arguments.cache))
+        sys.stdout.write("\n" + "\n".join(head_table(heads)) + "\n")
     return 0
 
 

@@ -86,5 +86,6 @@ def _row(obj: bpy.types.Object, source: TransferSource, mapped: MappedLayers, me
         "found_by": mapped.found_by,
         "layers": [layer.name for layer in mapped.layers],
         "unsure_vertices": int((~mapped.is_sure).sum()),
+        "unsure_parts": {part: round(share, 4) for part, share in mapped.unsure_parts.items()},
         "warnings": list(messages.warnings),
     }

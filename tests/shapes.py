@@ -84,3 +84,25 @@ def joined(*meshes: TriangleMesh) -> TriangleMesh:
     offsets = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
     triangles = [mesh.triangles + offset for mesh, offset in zip(meshes, offsets, strict=False)]
     return TriangleMesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(triangles))
+
+
+def lathe(profile: np.ndarray, n_around: int) -> TriangleMesh:
+    """Turn a line of distances from the z axis and heights (n, 2) around the axis; ends on the axis are closed.
+
+    Walked along from the bottom up, the outside is on the right.
+    """
+    angle = 2 * np.pi * np.arange(n_around) / n_around
+    around = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    rings = [np.column_stack([radius * around, np.full(n_around, height)]) for radius, height in profile]
+    column = np.arange(n_around)
+    after = np.roll(column, -1)
+    triangles = []
+    for low in range(len(profile) - 1):
+        corners = [low * n_around + column, low * n_around + after, (low + 1) * n_around + after]
+        triangles += [corners, [corners[0], corners[2], (low + 1) * n_around + column]]
+    triangles = np.concatenate([np.stack(corners, axis=1) for corners in triangles])
+    # All vertices of a ring at one place are one.
+    places, vertex = np.unique(np.round(np.vstack(rings), 9), axis=0, return_inverse=True)
+    corners = vertex.reshape(-1)[triangles]
+    is_whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    return TriangleMesh(places, corners[is_whole])

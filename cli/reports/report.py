@@ -48,6 +48,7 @@ class ObjectRow(TypedDict):
     found_by: NotRequired[str]
     layers: NotRequired[list[str]]
     unsure_vertices: NotRequired[int]
+    unsure_parts: NotRequired[dict[str, float]]
     reference: NotRequired[str]
 
 

@@ -14,6 +14,7 @@ from ..jobs import recent_analyses
 from ..jobs.recent_results import Recent, key_of
 from ..mesh_data.mesh_arrays import MeshArrays
 from ..mesh_data.unfinished_meshes import unfinished
+from ..mesh_state.part_table import PartTable
 from ..messages.user_errors import Refusal, in_name_of
 from ..registration.match_options import MatchOptions
 from . import layers
@@ -23,6 +24,8 @@ from .layers import Layer
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
 # Vertices of all maps that are kept; each takes a tenth of a kB.
 RECENT_VERTICES = 200_000
+# Parts of which no larger share than this is unsure are not named.
+FEW_UNSURE = 0.05
 # A matching this unsure is none.
 NO_MATCH = 0.03
 NOT_ALIKE = (
@@ -31,6 +34,22 @@ NOT_ALIKE = (
 )
 
 _recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeParts:
+    """The parts that a mesh shows.
+
+    Attributes
+    ----------
+    of_polygon : (F,) int32
+        Number of the part of each face.
+    table : PartTable
+        Their names.
+    """
+
+    of_polygon: NDArray[np.int32]
+    table: PartTable
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +69,7 @@ class TransferShape:
         How a target is matched with the source.
     modifiers : tuple of str
         Names of those that add to the mesh, so that its shape is not the one that is seen.
+    parts : ShapeParts, optional
     """
 
     name: str
@@ -59,6 +79,7 @@ class TransferShape:
     corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
     modifiers: tuple[str, ...] = ()
+    parts: ShapeParts | None = None
 
     @property
     def mesh(self) -> compute.TriangleMesh:
@@ -96,6 +117,9 @@ class MappedLayers:
         "number", "faces" or "shape".
     confidence : float
         Of the matching.
+    unsure_parts : dict of str to float
+        The share of its vertices that is unsure, for each part of the target, or of the source if the target has none,
+        where it is more than `FEW_UNSURE`; the largest first.
     torn_seams : tuple of str
         Layers whose seams could not be kept.
     warnings : tuple of str
@@ -108,6 +132,7 @@ class MappedLayers:
     is_sure: NDArray[np.bool_]
     found_by: str
     confidence: float
+    unsure_parts: Mapping[str, float]
     torn_seams: tuple[str, ...]
     warnings: tuple[str, ...] = ()
     unfinished: tuple[str, ...] = ()
@@ -230,6 +255,7 @@ def _mapped(
         is_sure=correspondence.is_sure,
         found_by=correspondence.found_by,
         confidence=float(correspondence.matching.confidence),
+        unsure_parts=_unsure_parts(mapper, source, target, ~correspondence.is_sure),
         torn_seams=tuple(mapper.torn_seams),
         warnings=(
             *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
@@ -242,6 +268,21 @@ def _mapped(
 def _unfinished(*shapes: TransferShape) -> tuple[str, ...]:
     """Return a sentence about each shape whose modifiers add to it."""
     return tuple(sentence for shape in shapes if (sentence := unfinished(shape.name, shape.modifiers)))
+
+
+def _unsure_parts(
+    mapper: _LayerMapper, source: TransferShape, target: TransferShape, is_unsure: NDArray[np.bool_]
+) -> dict[str, float]:
+    parts = target.parts or source.parts
+    if parts is None or not is_unsure.any():
+        return {}
+    of_polygon = parts.of_polygon if parts is target.parts else mapper.faces(parts.of_polygon)
+    of_corner, vertex = of_polygon[target.corner_polygon], target.corner_vertex
+    part, first = np.unique(of_corner.astype(np.int64) * len(is_unsure) + vertex, return_index=True)
+    part, unsure = part // len(is_unsure), is_unsure[vertex[first]]
+    share = np.bincount(part, unsure) / np.maximum(np.bincount(part), 1)
+    unsure_parts = [int(number) for number in np.argsort(-share, kind="stable") if share[number] > FEW_UNSURE]
+    return {parts.table.name_of(number): float(share[number]) for number in unsure_parts}
 
 
 class _LayerMapper:
@@ -272,7 +313,7 @@ class _LayerMapper:
             return layer.with_values(self._displacements(layer.values))
         if layer.kind == layers.CORNER:
             return layer.with_values(self._corners(layer))
-        return layer.with_values(self._faces(layer.values))
+        return layer.with_values(self.faces(layer.values))
 
     def _displacements(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the displacements of vertices; they are turned and scaled from shape to shape."""
@@ -280,7 +321,7 @@ class _LayerMapper:
         moved = compute.transfer_displacements(self._correspondence, self._source_mesh, self._welded, moved)
         return self._target.arrays.stretch.inverse.of(moved[self._places])
 
-    def _faces(self, values: NDArray[Any]) -> NDArray[Any]:
+    def faces(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return for each face what most of its area has on the source."""
         kinds, kind = np.unique(values, axis=0, return_inverse=True)
         labels = self._correspondence.transfer_faces(kind.reshape(-1)[self._source.arrays.polygon_of_triangle])

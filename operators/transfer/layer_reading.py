@@ -49,7 +49,7 @@ class LayerChoice:
 def read_layers(obj: bpy.types.Object, choice: LayerChoice) -> list[Layer]:
     """Return the chosen layers of an object, under the names that they get on the targets."""
     readers = {
-        layer_choices.PARTS: _parts,
+        layer_choices.PARTS: read_parts,
         layer_choices.GROUPS: lambda obj: _groups(obj, _chosen_groups(obj, choice)),
         layer_choices.SHAPE_KEYS: lambda obj: _shape_keys(obj, choice),
         layer_choices.MATERIALS: _materials,
@@ -68,10 +68,12 @@ def _with_side(layer: Layer) -> Layer:
     return replace(layer, name=bpy.utils.flip_name(layer.name), settings=settings)
 
 
-def _parts(obj: bpy.types.Object) -> Iterator[Layer]:
+def read_parts(obj: bpy.types.Object) -> list[Layer]:
+    """Return the parts of an object as a layer; none if it has none."""
     mesh = mesh_of(obj)
     if PART.name in mesh_arrays.own_names(mesh) and PART.name in mesh.attributes:
-        yield Layer(layers.PARTS, PART.name, read_labels(mesh).reshape(-1, 1), "INT")
+        return [Layer(layers.PARTS, PART.name, read_labels(mesh).reshape(-1, 1), "INT")]
+    return []
 
 
 def _chosen_groups(obj: bpy.types.Object, choice: LayerChoice) -> list[str]:

@@ -22,8 +22,8 @@ from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
 from ..registration.match_options import MatchOptions, remembered_options
-from .layer_mapping import MappedLayers, TransferShape
-from .layer_reading import LayerChoice, read_layers
+from .layer_mapping import MappedLayers, ShapeParts, TransferShape
+from .layer_reading import LayerChoice, read_layers, read_parts
 from .layer_rollback import layers_or_nothing
 from .layer_writing import WHOLE, Mix, refuse_obstacles, write_layers
 from .layers import PARTS, Layer
@@ -143,7 +143,16 @@ def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: Ma
         corner_polygon=np.repeat(np.arange(len(n_corners)), n_corners),
         options=options,
         modifiers=modifiers_that_add(obj),
+        parts=_parts_of(obj),
     )
+
+
+def _parts_of(obj: bpy.types.Object) -> ShapeParts | None:
+    """Return the parts that an object shows; None if it has none, or none that can be read: they only name places."""
+    try:
+        return next((ShapeParts(parts.values[:, 0], read(mesh_of(obj)).parts) for parts in read_parts(obj)), None)
+    except Refusal:
+        return None
 
 
 def _messages(
@@ -156,7 +165,8 @@ def _messages(
 
 
 def _doubts(obj: bpy.types.Object, source: str, mapped: MappedLayers) -> list[str]:
-    doubts = [
+    doubts = [f"{obj.name}: {part}: {share:.0%} unsure." for part, share in mapped.unsure_parts.items()]
+    doubts += [
         f'{obj.name}: the seams of "{name}" could not be kept, there are too many pieces.' for name in mapped.torn_seams
     ]
     if mapped.confidence <= SURE:

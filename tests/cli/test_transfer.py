@@ -4,8 +4,10 @@ import bpy
 import numpy as np
 import pytest
 
+from compute.surface.mesh import TriangleMesh
 from tests.cli.files import add_object, turned, write_blend, write_off
 from tests.compute.registration.shapes import lumpy_ball
+from tests.shapes import icosphere, joined
 
 
 @pytest.fixture
@@ -68,3 +70,17 @@ def test_a_driver_reads_the_keys_of_the_mesh_that_it_goes_to(run, tmp_path):
     read = {variable.name: variable.targets[0] for variable in keys.animation_data.drivers[0].driver.variables}
     assert (read["a"].id, read["a"].data_path) == (keys, 'key_blocks["Open"].value')
     assert (read["b"].id, read["b"].data_path) == (None, "location.x")
+
+
+def test_the_part_whose_vertices_are_unsure_is_named(run, weighted, tmp_path):
+    """Loose beads beside the highest lump are not analyzed, so what they get is unsure."""
+    assert run("segment", weighted)[0] == 0
+    beads = TriangleMesh(0.05 * icosphere(2).vertices + [0, 0, 2.3], icosphere(2).triangles)
+    copy = write_off(joined(turned(lumpy_ball(2)), beads), tmp_path / "copy.off")
+    source = tmp_path / "weighted_parts.blend"
+    code, report, _ = run("transfer", copy, "--source", source, "--layers", "groups", "--json")
+    (row,) = report["files"][0]["objects"]
+    ((part, share),) = row["unsure_parts"].items()
+    assert (code, row["unsure_vertices"]) == (0, len(beads.vertices))
+    assert 0.3 < share < 0.7
+    assert f"copy: {part}: {share:.0%} unsure." in row["warnings"]

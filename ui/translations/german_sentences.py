@@ -173,6 +173,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "Matched by shape.": "Nach der Gestalt zugeordnet.",
     "{} of {} vertices are unsure.": "{} von {} Punkten sind unsicher.",
     "{} of {} vertices are unsure and were filled in.": "{} von {} Punkten sind unsicher und wurden ergänzt.",
+    "{}: {}: {} unsure.": "{}: {}: {} unsicher.",
     "{} is matched with a confidence of {} only.": "{} ist nur mit einer Sicherheit von {} zugeordnet.",
     '{}: the seams of "{}" could not be kept, there are too many pieces.': "{}: die Nähte von „{}“ ließen sich nicht erhalten, es sind zu viele Stücke.",
     "{} was analyzed and keeps its own parts; Register Selected gives it those of {}.": "{} wurde analysiert und behält seine eigenen Teile; „Auswahl registrieren“ gibt ihm die von {}.",

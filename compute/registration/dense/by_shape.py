@@ -3,14 +3,18 @@
 The functional map gives rough places first, in which neighbours stay neighbours but small things are blurred.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...progress import Progress, section
 from ...surface.mesh import Floats, Ints
 from ..eigenfunctions.spectral_shape import farthest_points
 from ..eigenfunctions.zoomout import nearest_rows
+from .confidence import SURE, Landing, landing_confidence
 from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
-from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, aligned
+from .flipped_regions import RoughMap, with_regions_unflipped
+from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, Samples, aligned
 from .point_map import DENSE_SAMPLES
 from .shape_pair import Image, ShapePair
 from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles, unit_rows
@@ -22,48 +26,77 @@ N_SAMPLES = 2000
 # When the shapes lie on one another: candidates for the nearest point, and the distance on a surface of area 1 that a
 # turn of the normal counts as.
 LANDING_CANDIDATES, LANDING_TURN = 16, 0.005
-# A gap of this size between the shapes, on a surface of area 1, halves the confidence; so does this stretch of an edge.
-DOUBTFUL_GAP = 0.02
-DOUBTFUL_STRETCH = 2.5
+# With no larger share of vertices in doubt no other start is tried.
+FEW_DOUBTS = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Bent:
+    """The source bent onto the target: where the target's vertices come to lie on it, and how far that is trusted."""
+
+    tree: SurfaceTree
+    points: SurfacePoints
+    confidence: Floats
 
 
 def map_by_shape(pair: ShapePair, progress: Progress) -> Image:
     """Return the nearest points of the bent source to the vertices and to the middles of triangles of the target."""
     progress(0.0, "Mapping functions")
-    rough_places = _rough_places(pair)
-    bent_source = _bent_source(pair, rough_places, section(progress, 0.2, 0.8))
-    progress(0.8, "Finding the nearest points")
-    target, point = pair.target_shape, pair.target_points.point
-    tree = SurfaceTree(bent_source, pair.source_shape.triangles, LANDING_TURN, WRONG_SIDE)
-    net_points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES)
-    points = _on_input(pair, net_points)
-    confidence = np.where(pair.target_points.is_analyzed, _confidence(pair, points, gaps), 0.0)
-    return Image(points, _middle_triangles(pair, tree)[pair.target.surface.triangle_of_input], confidence)
-
-
-def _bent_source(pair: ShapePair, rough_places: Floats, progress: Progress) -> Floats:
-    """Return (n, 3) the points of the source's shape after it is bent onto the target from rough places (s, 3)."""
-    source = pair.source_shape
+    rough, source = _rough_map(pair), pair.source_shape
     graph = deformation_graph(source, min(N_NODES, len(source.positions) // POINTS_OF_NODE))
-    motion = _first_motion(graph, pair.samples, rough_places)
-    samples = pair.samples[:N_SAMPLES]
-    motion = aligned(graph, motion, samples, source.normals[samples], pair.target_shape, progress)
-    return warped(graph, motion)
+    best = _best_bent(pair, graph, rough, section(progress, 0.2, 0.9))
+    triangles = _middle_triangles(pair, best.tree)[pair.target.surface.triangle_of_input]
+    return Image(_on_input(pair, best.points), triangles, best.confidence)
 
 
-def _rough_places(pair: ShapePair) -> Floats:
-    """Return (s, 3) the places on the target to which the functional map brings the samples of the source."""
-    target_samples = farthest_points(pair.target_shape.positions, DENSE_SAMPLES)
+def _best_bent(pair: ShapePair, graph: DeformationGraph, rough: RoughMap, progress: Progress) -> Bent:
+    """Return the source bent from the first start that leaves little in doubt, or from the one that leaves least."""
+    starts = _starts(graph, rough)
+    tries: list[Bent] = []
+    for number, start in enumerate(starts):
+        step = section(progress, number / len(starts), (number + 1) / len(starts))
+        tries.append(_bent(pair, graph, start, rough.samples, step))
+        if (tries[-1].confidence < SURE).mean() <= FEW_DOUBTS:
+            break
+    return max(tries, key=lambda bent: float(bent.confidence.mean()))
+
+
+def _starts(graph: DeformationGraph, rough: RoughMap) -> list[Motion]:
+    """Return the motion of a rough map; before it, if regions are flipped in it, the one in which they are not."""
+    motion = _first_motion(graph, rough)
+    unflipped = with_regions_unflipped(graph, motion, rough)
+    return [motion] if unflipped is motion else [unflipped, motion]
+
+
+def _bent(pair: ShapePair, graph: DeformationGraph, start: Motion, samples: Samples, progress: Progress) -> Bent:
+    """Bend the source onto the target from a first motion, and let the vertices of the target land on it."""
+    source, target, point = pair.source_shape, pair.target_shape, pair.target_points.point
+    motion = aligned(graph, start, samples.first(N_SAMPLES), target, pair.target_walls.triangles, progress)
+    walls = pair.source_walls.triangles
+    tree = SurfaceTree(warped(graph, motion), source.triangles, LANDING_TURN, WRONG_SIDE, walls)
+    is_inner = pair.target_walls.points[point]
+    points, gaps = tree.nearest(target.positions[point], target.normals[point], LANDING_CANDIDATES, is_inner)
+    confidence = landing_confidence(pair, Landing(points, gaps, walls[points.triangles] != is_inner))
+    return Bent(tree, points, np.where(pair.target_points.is_analyzed, confidence, 0.0))
+
+
+def _rough_map(pair: ShapePair) -> RoughMap:
+    """Return where the functional map brings the samples of the source."""
+    source, target = pair.source_shape, pair.target_shape
+    target_samples = farthest_points(target.positions, DENSE_SAMPLES)
     source_rows, target_rows = pair.embedded(pair.samples, target_samples)
-    return pair.target_shape.positions[target_samples[nearest_rows(source_rows, target_rows)]]
+    point = target_samples[nearest_rows(source_rows, target_rows)]
+    samples = Samples(pair.samples, source.normals[pair.samples], pair.source_walls.points[pair.samples])
+    return RoughMap(samples, target.positions[point], target.normals[point])
 
 
-def _first_motion(graph: DeformationGraph, samples: Ints, places: Floats) -> Motion:
-    """Return the motion that shifts each node by the mean of the shifts that bring samples around it to places."""
-    weights, node = graph.weights[samples], graph.followed[samples]
+def _first_motion(graph: DeformationGraph, rough: RoughMap) -> Motion:
+    """Return the motion that shifts each node by the mean of the shifts of the samples around it."""
+    points = rough.samples.points
+    weights, node = graph.weights[points], graph.followed[points]
     n_nodes = len(graph.nodes)
     total = np.bincount(node.ravel(), weights.ravel(), n_nodes)
-    shift = np.repeat(places - graph.points[samples], node.shape[1], axis=0) * weights.ravel()[:, None]
+    shift = np.repeat(rough.places - graph.points[points], node.shape[1], axis=0) * weights.ravel()[:, None]
     sums = np.stack([np.bincount(node.ravel(), column, n_nodes) for column in shift.T], axis=1)
     return motion_towards(graph, graph.nodes + sums / np.maximum(total, 1e-9)[:, None])
 
@@ -83,26 +116,6 @@ def _middle_triangles(pair: ShapePair, tree: SurfaceTree) -> Ints:
     target = pair.target_shape
     corners = pair.target_points.point[pair.target.surface.mesh.triangles]
     normals = unit_rows(target.normals[corners].mean(axis=1))
-    nearest, _ = tree.nearest(target.positions[corners].mean(axis=1), normals, CANDIDATES)
+    places, is_inner = target.positions[corners].mean(axis=1), pair.target_walls.of_surface
+    nearest, _ = tree.nearest(places, normals, CANDIDATES, is_inner)
     return pair.source_shape.input_triangle[nearest.triangles]
-
-
-def _confidence(pair: ShapePair, points: SurfacePoints, gaps: Floats) -> Floats:
-    """Return (Vt,) from the gap to the bent source, and from how much the edges around a vertex are stretched."""
-    source, target, row = pair.source.mesh, pair.target.surface.mesh, pair.target_points.point
-    places = points.blend(source.vertices, source.triangles) / np.sqrt(pair.source.surface.mesh.areas.sum())
-    ends = target.edges.vertices
-    source_length, target_length = (
-        np.bincount(ends.ravel(), np.repeat(_lengths(positions, ends), 2), len(row))
-        for positions in (places, pair.target_shape.positions[row])
-    )
-    tiny = np.finfo(float).tiny
-    stretch = np.abs(np.log(np.maximum(source_length, tiny) / np.maximum(target_length, tiny)))
-    stretch = np.where(target_length > 0, stretch / np.log(DOUBTFUL_STRETCH), 0.0)
-    confidence = 1 / (1 + (gaps / DOUBTFUL_GAP) ** 2 + stretch**4)
-    # Doubles of a vertex share its edges.
-    return confidence[pair.target.surface.vertex_of_input]
-
-
-def _lengths(positions: Floats, ends: Ints) -> Floats:
-    return np.linalg.norm(positions[ends[:, 0]] - positions[ends[:, 1]], axis=1)

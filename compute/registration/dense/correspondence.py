@@ -22,11 +22,9 @@ from ..eigenfunctions.spectral_shape import spectral_shape
 from .by_faces import map_by_faces
 from .by_number import map_by_number
 from .by_shape import map_by_shape
+from .confidence import SURE
 from .shape_pair import Image, ShapePair
 from .surface_points import SurfacePoints
-
-# Below this confidence a vertex is better filled in from its neighbours.
-SURE = 0.5
 
 BY_NUMBER, BY_FACES, BY_SHAPE = "number", "faces", "shape"
 

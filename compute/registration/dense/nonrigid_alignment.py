@@ -5,6 +5,8 @@ the nodes so that points come closer along the normals, while neighbouring nodes
 are free, so features slide into place. Where neighbours disagree much, they may: joints bend there.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +14,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ...progress import Progress, silent
-from ...surface.mesh import Floats, Ints
+from ...surface.mesh import Bools, Floats, Ints
 from ..eigenfunctions.spectral_shape import SpectralShape
 from .deformation_graph import FOLLOWED, DeformationGraph, Motion, turned, warped
 from .surface_points import SurfacePoints, SurfaceTree, unit_rows
@@ -77,12 +79,34 @@ class ClosestPoints:
     weights: Floats
 
 
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Points of a graph that are laid onto a surface.
+
+    Attributes
+    ----------
+    points : (s,) int64
+    normals : (s, 3) float64
+        At these points, before any motion.
+    is_inner : (s,) bool
+        Whether they are on inner walls, which are laid onto inner walls.
+    """
+
+    points: Ints
+    normals: Floats
+    is_inner: Bools
+
+    def first(self, n_samples: int) -> Samples:
+        """Return the first of them."""
+        return Samples(self.points[:n_samples], self.normals[:n_samples], self.is_inner[:n_samples])
+
+
 def aligned(
     graph: DeformationGraph,
     motion: Motion,
-    samples: Ints,
-    normals: Floats,
+    samples: Samples,
     target: SpectralShape,
+    is_inner: Bools,
     progress: Progress = silent,
 ) -> Motion:
     """Return the motion that lays a graph onto a surface.
@@ -92,21 +116,21 @@ def aligned(
     graph : DeformationGraph
     motion : Motion
         To begin with.
-    samples : (s,) int64
-        Points of the graph that are laid onto the surface.
-    normals : (s, 3) float64
-        At these points, before any motion.
+    samples : Samples
     target : SpectralShape
-        The surface.
+        The surface, of T triangles.
+    is_inner : (T,) bool
+        Its inner walls.
     progress : Progress, optional
         Told before each round; may raise `Cancelled`.
     """
-    tree = SurfaceTree(target.positions, target.triangles, TURN, WRONG_SIDE)
+    tree = SurfaceTree(target.positions, target.triangles, TURN, WRONG_SIDE, is_inner)
     for number, weights in enumerate(ROUNDS):
         progress(number / len(ROUNDS), "Laying one shape onto the other")
-        places, turned_normals = warped(graph, motion, samples), turned(graph, motion, normals, samples)
-        points, distance = tree.nearest(places, turned_normals, CANDIDATES)
-        closest = _closest_points(samples, turned_normals, points, distance, target)
+        places, normals = warped(graph, motion, samples.points), turned(graph, motion, samples.normals, samples.points)
+        points, distance = tree.nearest(places, normals, CANDIDATES, samples.is_inner)
+        has_partner = is_inner[points.triangles] == samples.is_inner
+        closest = _closest_points(samples.points, normals, points, np.where(has_partner, distance, np.inf), target)
         motion = gauss_newton_step(graph, motion, closest, weights)
     return motion
 

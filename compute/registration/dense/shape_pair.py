@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...analysis.analysis import Analysis
+from ...surface.inner_walls import inner_vertices, inner_walls
 from ...surface.mesh import Bools, Floats, Ints
 from ..eigenfunctions.matching import Matching
 from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points
@@ -50,6 +51,24 @@ class ShapePoints:
 
 
 @dataclass(frozen=True, eq=False)
+class Walls:
+    """The inner walls of a spectral shape of n points and m triangles.
+
+    Attributes
+    ----------
+    of_surface : (T',) bool
+        Of the surface that was analyzed.
+    triangles : (m,) bool
+    points : (n,) bool
+        Points with inner triangles around them and no others.
+    """
+
+    of_surface: Bools
+    triangles: Bools
+    points: Bools
+
+
+@dataclass(frozen=True, eq=False)
 class ShapePair:
     """Two analyzed shapes and how their functions match.
 
@@ -83,11 +102,27 @@ class ShapePair:
         """The target's points for the vertices of its input."""
         return shape_points(self.target, self.target_shape)
 
+    @cached_property
+    def source_walls(self) -> Walls:
+        """The inner walls of the source."""
+        return _walls(self.source, self.source_shape)
+
+    @cached_property
+    def target_walls(self) -> Walls:
+        """The inner walls of the target."""
+        return _walls(self.target, self.target_shape)
+
     def embedded(self, source_points: Ints, target_points: Ints) -> tuple[Floats, Floats]:
         """Return points of both shapes in the space where the functional map makes them comparable."""
         n_target, n_source = self.functional_map.shape
         source_rows = self.source_shape.functions[source_points, :n_source] @ self.functional_map.T
         return source_rows, self.target_shape.functions[target_points, :n_target]
+
+
+def _walls(analysis: Analysis, shape: SpectralShape) -> Walls:
+    of_surface = inner_walls(analysis.surface.mesh)
+    triangles = of_surface[analysis.surface.triangle_of_input[shape.input_triangle]]
+    return Walls(of_surface, triangles, inner_vertices(shape.triangles, triangles, len(shape.positions)))
 
 
 def shape_points(analysis: Analysis, shape: SpectralShape) -> ShapePoints:

@@ -5,11 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...surface.mesh import Floats, Ints
+from ...surface.mesh import Bools, Floats, Ints
 
 # A triangle is found by several places on it where it is large: one for each piece of this many median sides.
 MEDIAN_SIDES = 2.0
 MOST_PIECES = 12
+# Distance, on a surface of area 1, that an inner wall instead of an outer one counts as, or the other way round.
+OTHER_WALL = 0.02
 # Below this cosine between two normals a point is on another side, such as the back of a thin ear or the lip below.
 SAME_SIDE = 0.3
 
@@ -45,24 +47,40 @@ class SurfaceTree:
         Distance that a turn of the normal by one radian counts as when candidates are gathered.
     wrong_side : float
         Distance that a normal of the other side counts as when one of them is chosen.
+    is_inner : (T,) bool, optional
+        Triangles that are inner walls; none if left out.
     """
 
-    def __init__(self, positions: Floats, triangles: Ints, turn: float, wrong_side: float) -> None:
+    def __init__(
+        self, positions: Floats, triangles: Ints, turn: float, wrong_side: float, is_inner: Bools | None = None
+    ) -> None:
         self._corners = positions[triangles]
         self._normals = unit_rows(area_vectors(self._corners))
         self._turn, self._wrong_side = turn, wrong_side
+        self._is_inner = np.zeros(len(triangles), dtype=bool) if is_inner is None else is_inner
         places, self._triangle_of_place = _places(self._corners)
-        self._tree = cKDTree(np.hstack([places, turn * self._normals[self._triangle_of_place]]))
+        self._tree = cKDTree(self._keys(places, self._normals, self._is_inner, self._triangle_of_place))
 
-    def nearest(self, points: Floats, normals: Floats, n_candidates: int) -> tuple[SurfacePoints, Floats]:
-        """Return the nearest point to each of (n, 3) points with unit normals, and (n,) its distance."""
+    def _keys(self, places: Floats, normals: Floats, is_inner: Bools, row: Ints | slice = slice(None)) -> Floats:
+        """Return (n, 7) points of the space in which places that look alike are near."""
+        return np.hstack([places, self._turn * normals[row], OTHER_WALL * is_inner[row, None]])
+
+    def nearest(
+        self, points: Floats, normals: Floats, n_candidates: int, is_inner: Bools | None = None
+    ) -> tuple[SurfacePoints, Floats]:
+        """Return the nearest point to each of (n, 3) points with unit normals, and (n,) its distance.
+
+        An inner wall is sought for points that are on one (n,), an outer wall for all others.
+        """
         n_candidates = min(n_candidates, len(self._triangle_of_place))
-        place = self._tree.query(np.hstack([points, self._turn * normals]), n_candidates)[1].reshape(len(points), -1)
+        is_inner = np.zeros(len(points), dtype=bool) if is_inner is None else is_inner
+        place = self._tree.query(self._keys(points, normals, is_inner), n_candidates)[1].reshape(len(points), -1)
         triangle = self._triangle_of_place[place]
         rows = np.repeat(points, n_candidates, axis=0)
         barycentric, distance = nearest_in_triangles(rows, self._corners[triangle.ravel()])
         cosine = np.einsum("nkj,nj->nk", self._normals[triangle], normals)
         cost = distance.reshape(triangle.shape) ** 2 + (self._wrong_side * np.maximum(SAME_SIDE - cosine, 0)) ** 2
+        cost += OTHER_WALL**2 * (self._is_inner[triangle] != is_inner[:, None])
         best = np.arange(len(points)), cost.argmin(axis=1)
         nearest = SurfacePoints(triangle[best], barycentric.reshape(*triangle.shape, 3)[best])
         return nearest, distance.reshape(triangle.shape)[best]

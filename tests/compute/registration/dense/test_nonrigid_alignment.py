@@ -9,6 +9,7 @@ from compute.registration.dense.nonrigid_alignment import (
     SLIDING,
     ClosestPoints,
     Round,
+    Samples,
     aligned,
     gauss_newton_step,
 )
@@ -25,18 +26,28 @@ def graph(shape):
     return deformation_graph(shape, 60)
 
 
+def laid_onto_itself(shape, graph, motion, inner_target=False, inner_samples=False):
+    points = np.arange(0, len(shape.positions), 3)
+    samples = Samples(points, shape.normals[points], np.full(len(points), inner_samples))
+    return aligned(graph, motion, samples, shape, np.full(len(shape.triangles), inner_target))
+
+
 def test_a_shape_that_lies_on_its_target_stays(shape, graph):
-    samples = np.arange(0, len(shape.positions), 3)
-    motion = aligned(graph, motion_towards(graph, graph.nodes), samples, shape.normals[samples], shape)
+    motion = laid_onto_itself(shape, graph, motion_towards(graph, graph.nodes))
     np.testing.assert_allclose(warped(graph, motion), shape.positions, atol=1e-6)
 
 
 def test_a_shape_beside_its_target_is_laid_onto_it(shape, graph):
-    samples = np.arange(0, len(shape.positions), 3)
     away = motion_towards(graph, graph.nodes + np.array([0.02, -0.015, 0.01]))
-    motion = aligned(graph, away, samples, shape.normals[samples], shape)
+    motion = laid_onto_itself(shape, graph, away)
     gap = np.linalg.norm(warped(graph, motion) - shape.positions, axis=1)
     assert gap.mean() < 0.1 * np.linalg.norm([0.02, -0.015, 0.01])
+
+
+def test_outer_walls_are_not_drawn_to_inner_ones(shape, graph):
+    away = motion_towards(graph, graph.nodes + np.array([0.02, -0.015, 0.01]))
+    motion = laid_onto_itself(shape, graph, away, inner_target=True)
+    np.testing.assert_allclose(warped(graph, motion), warped(graph, away), atol=1e-9)
 
 
 def test_distance_along_the_surface_hardly_counts(graph, shape):

@@ -24,3 +24,13 @@ def test_the_other_side_of_a_thin_plate_is_not_taken():
     tree = SurfaceTree(plate, triangles, turn=0.01, wrong_side=1.0)
     found, _ = tree.nearest(np.array([[0.5, 0.4, -0.01]]), np.array([[0.0, 0, 1]]), 4)
     assert found.triangles[0] < 2
+
+
+def test_an_inner_wall_is_found_from_within_and_the_outer_one_from_without():
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    walls = np.vstack([square, square + np.array([0, 0, 0.01])])
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+    tree = SurfaceTree(walls, triangles, turn=0.01, wrong_side=1.0, is_inner=np.array([False, False, True, True]))
+    places, up = np.array([[0.5, 0.4, 0.009], [0.5, 0.4, 0.001]]), np.array([[0.0, 0, 1]] * 2)
+    assert (tree.nearest(places, up, 4)[0].triangles < 2).all()
+    assert (tree.nearest(places, up, 4, np.array([True, True]))[0].triangles >= 2).all()
