@@ -6,7 +6,7 @@ import pytest
 
 from compute.fem import assembly, eigensolver, order_choice
 from compute.fields import scalar_field, shell_fields
-from compute.registration.dense import by_shape, deformation_graph, nonrigid_alignment, point_map, transfer
+from compute.registration.dense import by_shape, confidence, deformation_graph, nonrigid_alignment, point_map, transfer
 from compute.registration.eigenfunctions import hypotheses, map_scoring, spectral_shape, zoomout
 from compute.registration.parts import part_matching
 from compute.segmentation.hierarchy import arc_measures, levels, nesting
@@ -43,8 +43,8 @@ METHOD = {
     "sliding": f"{nonrigid_alignment.SLIDING:g}² |x' - y|²",
     "lost": f"{nonrigid_alignment.TURN:g}² |n' - n|²) / {nonrigid_alignment.LOST:g}²",
     "step": f"lengthened by {nonrigid_alignment.RELAXATION:g}",
-    "gap": f"(gap / {by_shape.DOUBTFUL_GAP:g})²",
-    "stretch": f"ln {by_shape.DOUBTFUL_STRETCH:g})⁴",
+    "gap": f"(gap / {confidence.DOUBTFUL_GAP:g})²",
+    "stretch": f"ln {confidence.DOUBTFUL_STRETCH:g})⁴",
     "joint": f"{bends.BEND:g} · number of joints",
     "neck of a limb": f"thinner than {bends.NECK:g} of",
     "softness": f"limb: {binding.SOFTNESS:g} of its radius",
