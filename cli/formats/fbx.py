@@ -18,7 +18,7 @@ from .fbx_animation import stacks_written_once
 from .open_file import OpenFile, open_file
 from .own_attributes import claim_own_attributes
 from .part_materials import give_parts_materials
-from .repairs import OTHER_FACES, WHOLE_FILE, refuse_no_numbers
+from .repairs import WHOLE_FILE, other_faces, refuse_no_numbers
 
 MAGIC, TEXT = b"Kaydara FBX Binary  \x00", b"; FBX"
 # Bytes of the head, and the version from which places in the file have 64 bits.
@@ -38,7 +38,7 @@ def read_fbx(path: Path) -> OpenFile:
     read = bpy.ops.import_scene.fbx if "fbx" in dir(bpy.ops.import_scene) else bpy.ops.wm.fbx_import
     read(filepath=str(path))
     n_listed, n_faces = sum(count for _, _, count in shapes), sum(len(mesh.polygons) for mesh in bpy.data.meshes)
-    repairs = {WHOLE_FILE: [OTHER_FACES.format(n_listed, n_faces)]} if shapes and n_listed != n_faces else {}
+    repairs = {WHOLE_FILE: [other_faces(n_listed, n_faces)]} if shapes and n_listed != n_faces else {}
     return open_file(claim_own_attributes(repairs))
 
 

@@ -14,7 +14,7 @@ from .gltf_file import Table, parse_gltf, rows_of
 from .open_file import OpenFile, open_file
 from .own_attributes import claim_own_attributes
 from .part_materials import give_parts_materials, has_colours_of_user
-from .repairs import OTHER_FACES, refuse_no_numbers
+from .repairs import other_faces, refuse_no_numbers
 
 # What contents can raise that nobody has looked at; the importer is asked then, and says what is wrong.
 DAMAGED = (KeyError, IndexError, TypeError, ValueError, AttributeError)
@@ -28,7 +28,7 @@ def read_gltf(path: Path) -> OpenFile:
     # The shape of bones would be one mesh more.
     _call(bpy.ops.import_scene.gltf, filepath=str(path), disable_bone_shape=True)
     repairs = {
-        mesh.name: [OTHER_FACES.format(n_listed[mesh.name], len(mesh.polygons))]
+        mesh.name: [other_faces(n_listed[mesh.name], len(mesh.polygons))]
         for mesh in bpy.data.meshes
         if n_listed.get(mesh.name, len(mesh.polygons)) != len(mesh.polygons)
     }

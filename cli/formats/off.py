@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
@@ -34,11 +34,14 @@ class OffFile:
         Of each face.
     corners : (C,) int64
         The points of one face after the other, whether they exist or not.
+    unread : list of int
+        Numbers of the lines behind the last face.
     """
 
     vertices: NDArray[np.float64]
     n_corners: NDArray[np.int64]
     corners: NDArray[np.int64]
+    unread: list[int] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +146,7 @@ def _one_on_each_line(text: _Text, width: int) -> OffFile:
     if len(text.lines) < end:
         raise ValueError(end)
     rows = _numbers(text.lines[: text.n_vertices], range(text.n_coordinates))
-    return OffFile(_places(rows), *_faces_of_lines(text.lines[text.n_vertices : end]))
+    return OffFile(_places(rows), *_faces_of_lines(text.lines[text.n_vertices : end]), text.line_numbers[end:])
 
 
 def _each_face_on_a_line(text: _Text, width: int) -> OffFile:

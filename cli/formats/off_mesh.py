@@ -21,6 +21,8 @@ LEFT_OUT = (
     "Faces that cannot be divided: {} of {}; they have fewer than 3 corners, repeat a corner or another face, or name"
     " points that do not exist. Their lines in the result have the color of the same face or of what is around them."
 )
+UNREAD = "{} lines behind the last face, from line {} on, were not read: the head counts fewer faces."
+UNREAD_LINE = "1 line behind the last face, line {}, was not read: the head counts fewer faces."
 # While the mesh is made: the line of the file that each face comes from.
 LINE = "line of the file"
 
@@ -36,6 +38,7 @@ def read_off(path: Path) -> OpenFile:
     present(bpy.context.collection).objects.link(bpy.data.objects.new(path.stem, mesh))
     told = [MOVED.format(n_moved)] if n_moved else []
     told += [LEFT_OUT.format(n_faces - len(kept), n_faces)] if len(kept) < n_faces else []
+    told += _told_of_unread(file.unread)
     return open_file({mesh.name: told}, FaceLines(file.n_corners, file.corners, kept))
 
 
@@ -54,6 +57,13 @@ def write_off(path: Path, file: OpenFile) -> None:
         ["OFF", f"{len(mesh.vertices)} {len(labels)} 0", *["%.9g %.9g %.9g"] * len(mesh.vertices), *faces, ""]
     )
     path.write_text(text % (*_places(mesh), *lines.corners.tolist()), encoding="ascii")
+
+
+def _told_of_unread(lines: list[int]) -> list[str]:
+    """Return the sentence about the lines behind the last face, if there are any."""
+    if len(lines) == 1:
+        return [UNREAD_LINE.format(lines[0])]
+    return [UNREAD.format(len(lines), lines[0])] if lines else []
 
 
 def _fill(mesh: bpy.types.Mesh, file: OffFile) -> NDArray[np.int64]:

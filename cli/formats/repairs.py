@@ -19,9 +19,13 @@ MOVED = (
     " has none."
 )
 NO_NUMBERS = "the mesh {!r} has points that are no numbers ({}); repair the file in the program that wrote it."
-OTHER_FACES = (
+FEWER_FACES = (
     "The file lists {} faces and the mesh has {}: those that repeat a corner or another face, or name points that do"
     " not exist, were left out or divided."
+)
+MORE_FACES = (
+    "The file lists {} faces and the mesh has {}: Blender divided some of them, or took something else for faces; look"
+    " whether the mesh is as it should be."
 )
 
 
@@ -44,8 +48,13 @@ def mended(n_listed_faces: int | None = None, not_finite: NDArray[np.bool_] | No
         # Custom normals are only kept this way.
         mesh.validate(clean_customdata=False)
     if _n_faces() != n_listed:
-        repairs[WHOLE_FILE].append(OTHER_FACES.format(n_listed, _n_faces()))
+        repairs[WHOLE_FILE].append(other_faces(n_listed, _n_faces()))
     return repairs
+
+
+def other_faces(n_listed: int, n_faces: int) -> str:
+    """Return the sentence about a mesh that has fewer or more faces than its file lists."""
+    return (FEWER_FACES if n_faces < n_listed else MORE_FACES).format(n_listed, n_faces)
 
 
 def move_to_neighbours(mesh: bpy.types.Mesh, not_finite: NDArray[np.bool_] | None = None) -> int:

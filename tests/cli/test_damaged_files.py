@@ -37,6 +37,7 @@ def sound(tmp_path_factory):
     bpy.ops.wm.ply_export(filepath=str(folder / "star.ply"))
     bpy.ops.wm.ply_export(filepath=str(folder / "text.ply"), ascii_format=True)
     bpy.ops.wm.stl_export(filepath=str(folder / "star.stl"))
+    bpy.ops.wm.stl_export(filepath=str(folder / "text.stl"), ascii_format=True)
     bpy.ops.export_scene.gltf(filepath=str(folder / "star.glb"))
     bpy.ops.export_scene.gltf(filepath=str(folder / "star.gltf"), export_format="GLTF_SEPARATE")
     bpy.ops.export_scene.fbx(filepath=str(folder / "star.fbx"))
@@ -94,6 +95,17 @@ def assert_answered(run, sound, tmp_path, name, seeds):
         ("star.blend", lambda data: data.replace(b"BLENDER-v4", b"BLENDER-v9")[:2000], "it was saved by Blender 9."),
         ("star.stl", lambda data: data[:-60], "after 78 of 80 triangles"),
         ("star.stl", lambda data: data + b"by hand", "byte 4084: there is something behind the 80 triangles"),
+        ("star.stl", lambda data: b"solid facet".ljust(80) + data[80:-60], "after 78 of 80 triangles"),
+        ("text.stl", lambda data: data[: data.rindex(b"endsolid")], "line 561: the file is cut short"),
+        ("text.stl", lambda data: data[: data.rindex(b"endfacet")], "line 560: the file is cut short"),
+        ("text.stl", lambda data: data[: data.index(b"vertex")], "line 3: the file is cut short"),
+        ("text.stl", lambda data: data.replace(b"endfacet\n", b"", 1), "line 8: a facet has its first line, three"),
+        ("text.stl", lambda data: data.upper(), "line 4: Blender cannot read VERTEX in capitals; export it"),
+        (
+            "text.stl",
+            lambda data: data.replace(b"\n", b"\r"),
+            "Blender can only read a text whose vertices have a line",
+        ),
         ("star.ply", lambda data: data[:-7], 'a row of "face" with 3 entries does not fit'),
         ("star.ply", lambda data: data.replace(b"end_header", b"end_haeder"), 'the header has no line "end_header"'),
         ("star.ply", lambda data: data.replace(b"float y", b"flaot y"), 'line 6: "property flaot y"'),
@@ -121,3 +133,17 @@ def test_a_sound_file_is_not_refused(run, sound, tmp_path, name):
     for path in sound.iterdir():
         shutil.copy(path, tmp_path)
     assert outcome(run, tmp_path / name) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("star.stl", lambda data: b"solid star".ljust(80) + data[80:]),
+        ("text.stl", lambda data: data.replace(b"solid", b"SOLID").replace(b"facet", b"Facet")),
+        ("text.stl", lambda data: b"\xef\xbb\xbf" + data.replace(b"\n", b"\r\n") + b"\r\n; by hand\r\n"),
+    ],
+)
+def test_an_stl_is_text_or_binary_by_what_is_in_it(run, sound, tmp_path, name, change):
+    (tmp_path / name).write_bytes(change((sound / name).read_bytes()))
+    _, report, _ = run("segment", tmp_path / name, "--json")
+    assert (len(bpy.data.meshes[0].polygons), report["files"][0]["objects"][0]["warnings"]) == (80, [])

@@ -187,6 +187,15 @@ def test_faces_that_cannot_be_held_are_counted(run, tmp_path, suffix):
     assert "The file lists 1281 faces and the mesh has 1280" in rows_of(report)[0]["warnings"][0]
 
 
+def test_no_face_is_called_missing_where_the_mesh_has_more_than_the_file_lists(run):
+    run("--help")
+    from eigenparts.cli.formats.repairs import other_faces
+
+    assert "lists 9 faces and the mesh has 8: those that repeat" in other_faces(9, 8)
+    assert "lists 8 faces and the mesh has 9: Blender divided" in other_faces(8, 9)
+    assert "left out" not in other_faces(8, 9)
+
+
 def test_nothing_is_told_of_a_sound_file(run, tmp_path):
     add_object(star(5, 3))
     for suffix in EXPORTERS:

@@ -148,6 +148,21 @@ def test_each_face_keeps_its_line(run, tmp_path):
     assert found[103] == expected[-1]
 
 
+@pytest.mark.parametrize(
+    ("behind", "told"),
+    [
+        ("3 0 1 2\n\n# more\n3 0 1 2\n", "2 lines behind the last face, from line 1925 on, were not read: the head"),
+        ("by hand\n", "1 line behind the last face, line 1925, was not read: the head counts fewer faces."),
+    ],
+)
+def test_lines_behind_the_last_face_are_told(run, tmp_path, behind, told):
+    path = write_off(star(5, 3), tmp_path / "star.off")
+    path.write_text(path.read_text() + behind)
+    _, report, _ = run("segment", path, "--json")
+    (warning,) = report["files"][0]["objects"][0]["warnings"]
+    assert warning.startswith(told)
+
+
 def test_a_result_can_be_divided_again_line_by_line(run, star_off, tmp_path):
     run("segment", star_off, "--output", tmp_path)
     again = (tmp_path / "star_parts.off").rename(tmp_path / "again.off")
