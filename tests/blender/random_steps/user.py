@@ -145,7 +145,11 @@ def change_mode(chance: Random) -> str:
     cast.select(obj)
     if not bpy.ops.object.mode_set.poll():
         return "cannot change the mode"
-    bpy.ops.object.mode_set(mode=mode)
+    try:
+        bpy.ops.object.mode_set(mode=mode)
+    except RuntimeError:
+        # Blender's own refusal, as of a sculpt mode that the mesh cannot have.
+        return f"{obj.name} is refused {mode}"
     return f"{obj.name} in {mode}"
 
 
