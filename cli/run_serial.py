@@ -1,6 +1,5 @@
 """Do one file after the other in this process: open, divide, write, tell."""
 
-import re
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -9,15 +8,13 @@ from typing import Protocol
 from ..operators.messages.user_errors import Refusal
 from . import formats
 from .formats import OpenFile
-from .formats.file_errors import problem_of
+from .formats.file_errors import problem_of, reason_of
 from .jobs import Job
 from .processes.suppress_output import blender_is_quiet
 from .reports.report import ObjectRow, Report, Settings, problems_of
 from .results.digests import digest_of
 from .results.stages import check_room, remove_stale, stage_in
 from .results.targets import publish, refuse_before_work
-
-NO_FILE = "there is no such file."
 
 
 class Command(Protocol):
@@ -52,7 +49,8 @@ def _report(job: Job, command: Command) -> Report:
 
 def _do(job: Job, command: Command, start: float) -> Report:
     if not job.path.is_file():
-        raise Refusal("it is a folder; batch does all files of folders." if job.path.is_dir() else NO_FILE)
+        is_folder = job.path.is_dir()
+        raise Refusal("it is a folder; batch does all files of folders." if is_folder else "there is no such file.")
     refuse_before_work(job)
     report: Report = {"file": str(job.path), "digest": digest_of(job.path), "settings": command.settings}
     file, report["objects"] = command.open_and_process(job.path)
@@ -77,10 +75,7 @@ def _save(path: Path, file: OpenFile) -> None:
         formats.save(path, file)
     except RuntimeError as error:
         check_room(path.parent)
-        # What is wrong stands at the end of what the exporters of Blender say, behind the name of a class.
-        lines = [line.strip() for line in str(error).splitlines() if line.strip() and not line.startswith("Location:")]
-        cause = re.sub(r"^(\w*Error: |\[Errno \d+\] )+", "", lines[-1]).rstrip(".")
-        raise Refusal(f"Blender could not write {path.name}: {cause}; is there room on the disk?") from error
+        raise Refusal(f"Blender could not write {path.name}: {reason_of(error)}; is there room on the disk?") from error
     check_room(path.parent)
 
 

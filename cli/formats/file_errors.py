@@ -39,19 +39,20 @@ def problem_of(error: Exception) -> str:
     if isinstance(error, MemoryError):
         return NO_MEMORY + MORE_MEMORY
     if isinstance(error, RuntimeError) and str(error).startswith(OPERATOR):
-        return f"Blender could not write it: {_reason(str(error))}"
+        return f"Blender could not write it: {reason_of(error)}."
     place = traceback.extract_tb(error.__traceback__)[-1:]
     where = f" ({Path(place[0].filename).name}, line {place[0].lineno})" if place else ""
     return f"something went wrong that should not{where}; please report it, with the file if you can."
 
 
-def _reason(said: str) -> str:
+def reason_of(error: RuntimeError) -> str:
     """Return what an operator of Blender's said, without labels, and without the traceback of one in Python."""
+    said = str(error)
     if number := re.search(r"\[Errno \d+\] ([^:\n]*)", said):
-        return number[1].strip() + "."
+        return number[1].strip()
     if "Traceback" in said:
-        return "this scene is more than its writer understands; take another format, such as .blend."
-    return _as_named(said.splitlines()[0].removeprefix(OPERATOR).strip().rstrip(".")) + "."
+        return "this scene is more than its writer understands; take another format, such as .blend"
+    return _as_named(said.splitlines()[0].removeprefix(OPERATOR).strip().rstrip("."))
 
 
 def _as_named(path: str) -> str:

@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...operators.blender.known_values import elements_of, mesh_of, present
-from ...operators.mesh_data.mesh_arrays import n_corners_of_polygon, read_own_integers, vertex_of_corner
+from ...operators.mesh_data.mesh_arrays import (
+    n_corners_of_polygon,
+    read_own_integers,
+    read_positions,
+    vertex_of_corner,
+)
+from ...operators.mesh_state.palette import srgb_of
 from ...operators.mesh_state.state import is_analyzed, read
 from ...operators.outputs.division import PART
 from ...operators.outputs.vertex_map import labels_of_vertices
@@ -56,7 +62,7 @@ def write_off(path: Path, file: OpenFile) -> None:
     text = "\n".join(
         ["OFF", f"{len(mesh.vertices)} {len(labels)} 0", *["%.9g %.9g %.9g"] * len(mesh.vertices), *faces, ""]
     )
-    path.write_text(text % (*_places(mesh), *lines.corners.tolist()), encoding="ascii")
+    path.write_text(text % (*read_positions(mesh).ravel().tolist(), *lines.corners.tolist()), encoding="ascii")
 
 
 def _told_of_unread(lines: list[int]) -> list[str]:
@@ -122,15 +128,7 @@ def _give_repeats_the_same(labels: NDArray[np.int32], lines: FaceLines) -> None:
             labels[line] = label_of.get(corners[line], labels[line])
 
 
-def _places(mesh: bpy.types.Mesh) -> list[float]:
-    """Return the coordinates of one point after the other."""
-    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", places)
-    return places.tolist()
-
-
 def _bytes_of_labels(mesh: bpy.types.Mesh, n_labels: int) -> list[str]:
     """Return the colour of each label as the format wants it, "230 159 0"."""
     linear = read(mesh).parts.colours_of(n_labels)[:, :3]
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return [" ".join(map(str, row)) for row in np.rint(255 * srgb).astype(int).tolist()]
+    return [" ".join(map(str, row)) for row in np.rint(255 * srgb_of(linear)).astype(int).tolist()]

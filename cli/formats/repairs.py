@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...operators.mesh_data.mesh_arrays import read_edges
+from ...operators.mesh_data.mesh_arrays import read_edges, read_positions
 from ...operators.messages.user_errors import Refusal
 
 # Sentences about the meshes of a file by their names; those about the file as a whole have none.
@@ -59,9 +59,7 @@ def other_faces(n_listed: int, n_faces: int) -> str:
 
 def move_to_neighbours(mesh: bpy.types.Mesh, not_finite: NDArray[np.bool_] | None = None) -> int:
     """Put points that are no numbers in the middle of their neighbours, and return how many there are."""
-    places = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", places)
-    places = places.reshape(-1, 3)
+    places = read_positions(mesh)
     is_lost = ~np.isfinite(places).all(axis=1)
     if not_finite is not None and len(not_finite) == len(is_lost):
         is_lost |= not_finite

@@ -41,6 +41,7 @@ from ..surface.mesh import Ints, TriangleMesh
 # A part that is divided further keeps the features of this persistence (the diffusion field has no unit): fingers of an
 # arm have 0.01 and more, the ripples of its skin less than 0.001.
 WITHIN_THRESHOLD = 0.004
+# And has at least this many faces.
 LEAST_FACES_WITHIN = 8
 APART = (
     "Each loose part was analyzed by itself, so there is no one shape to be matched or to get bones; analyze the mesh"

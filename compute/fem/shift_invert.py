@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import ArpackError, LinearOperator, SuperLU, eigsh, splu
 
 from ..errors import SpectrumError
+from ..memory import FULL
 from ..progress import Progress
 from ..surface.mesh import Floats
 
@@ -51,7 +52,7 @@ def _factor(stiffness: csr_array, mass: csr_array, **options: Any) -> SuperLU:
     try:
         return splu((stiffness - SHIFT * mass).tocsc(), **options)
     except MemoryError as error:
-        raise SpectrumError("The memory is full; take elements of a lower order, or decimate the mesh.") from error
+        raise SpectrumError(FULL) from error
     except RuntimeError as error:
         raise SpectrumError("The faces collapse into points or lines; merge the vertices by distance.") from error
 

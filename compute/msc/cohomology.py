@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 
-from ..surface.mesh import Bools, Edges, Ints
+from ..surface.mesh import Bools, Edges, Ints, connected_pieces
 from .links import Links
 
 
@@ -104,8 +104,7 @@ def _triangle_tree(edges: Edges, n_triangles: int, in_tree: Bools) -> _Cotree:
     """Return a spanning forest of the triangles that crosses only edges outside the vertex tree."""
     outside, root = n_triangles, n_triangles + 1
     edge, left, right = _crossings(edges, in_tree, outside)
-    sheets = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(root, root))
-    _, sheet = connected_components(sheets, directed=False)
+    sheet = connected_pieces(left, right, root)
     first = np.unique(sheet, return_index=True)[1]
     first[sheet[outside]] = outside
     joined = coo_array(

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from ..surface.mesh import Bools, Floats, Ints
+from ..surface.mesh import Bools, Floats, Ints, connected_pieces
 from .ranked_net import RankedNet
 
 
@@ -131,8 +129,7 @@ def _lower_link(vertices: Ints, net: RankedNet) -> tuple[_LinkNodes, Ints]:
     keys = np.unique(np.concatenate([key_ahead[low_ahead], key_behind[low_behind]]))
     is_edge = low_ahead & low_behind
     ends = keys.searchsorted(key_ahead[is_edge]), keys.searchsorted(key_behind[is_edge])
-    joined = coo_array((np.ones(len(ends[0]), dtype=bool), ends), shape=(len(keys), len(keys)))
-    _, component = connected_components(joined, directed=False)
+    component = connected_pieces(*ends, len(keys))
     is_first = np.zeros(len(keys), dtype=bool)
     is_first[np.unique(component, return_index=True)[1]] = True
     nodes = _LinkNodes(keys // n, net.vertex_at_rank[keys % n], component, is_first)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..surface.cleaning import Surface
-from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
+from ..surface.mesh import Bools, Floats, Ints, TriangleMesh, area_vectors, unit_rows
 from ..surface.orientation import wrongly_wound
 from ..surface.ties import CHOICE, first_nearest
 
@@ -153,8 +153,6 @@ def _turn(first: Floats, second: Floats) -> Floats:
 
 
 def _vertex_normals(mesh: TriangleMesh, triangles: Ints) -> Floats:
-    a, b, c = mesh.vertices[triangles].swapaxes(0, 1)
-    around = np.repeat(np.cross(b - a, c - a), 3, axis=0)
+    around = np.repeat(area_vectors(mesh.vertices[triangles]), 3, axis=0)
     sums = [np.bincount(triangles.ravel(), column, len(mesh.vertices)) for column in around.T]
-    normals = np.stack(sums, axis=1)
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+    return unit_rows(np.stack(sums, axis=1))

@@ -3,14 +3,12 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..choices import SHELLS
 from ..errors import MeshError
 from .bridging import bridge_shells, large_shells
-from .mesh import Bools, Ints, TriangleMesh
+from .mesh import Bools, Ints, TriangleMesh, connected_pieces
 
 # Edges shorter than this are collapsed; in units of the root of the mean area of a triangle.
 SHORTEST_EDGE = 1e-6
@@ -191,8 +189,7 @@ def _contract_short_edges(mesh: TriangleMesh, vertex_of_input: Ints) -> Ints:
     if not len(tails):
         return vertex_of_input
     n_vertices = len(vertex_of_input)
-    graph = coo_array((np.ones(len(tails), dtype=bool), (tails, heads)), shape=(n_vertices, n_vertices))
-    _, first, piece = np.unique(connected_components(graph, directed=False)[1], return_index=True, return_inverse=True)
+    _, first, piece = np.unique(connected_pieces(tails, heads, n_vertices), return_index=True, return_inverse=True)
     return first[piece.reshape(-1)][vertex_of_input]
 
 

@@ -6,10 +6,8 @@ or a pocket, which is hollow or has an opening that is shorter than the border o
 """
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from .mesh import Bools, Floats, Ints, TriangleMesh, sum_by
+from .mesh import Bools, Floats, Ints, TriangleMesh, area_vectors, connected_pieces, sum_by, unit_rows
 from .orientation import outward_triangles
 
 # Axes along which a mesh is looked at, from both ends; points on it that hide others, and those in a cell of a picture.
@@ -55,7 +53,7 @@ def openness(mesh: TriangleMesh) -> Floats:
     Both sides count, so that no winding is needed; the back of a closed surface is hidden by its front.
     """
     corners = mesh.vertices[mesh.triangles] - mesh.vertices[mesh.triangles].mean(axis=(0, 1))
-    centres, normals = corners.mean(axis=1), _unit_normals(corners)
+    centres, normals = corners.mean(axis=1), unit_rows(area_vectors(corners))
     cell = np.sqrt(BLOCKERS_OF_CELL * mesh.areas.sum() / N_BLOCKERS)
     points = np.concatenate([centres, _blockers(corners, mesh.areas)])
     seen, possible = np.zeros(len(centres)), np.zeros(len(centres))
@@ -127,9 +125,7 @@ def _pieces(mesh: TriangleMesh, hidden: Bools) -> Ints:
     """Return (T,) the piece of hidden triangles joined by edges that each hidden one belongs to."""
     pairs = mesh.edges.neighbours
     pairs = pairs[hidden[pairs].all(axis=1)]
-    n = len(mesh.triangles)
-    graph = coo_array((np.ones(len(pairs), dtype=bool), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return connected_pieces(pairs[:, 0], pairs[:, 1], len(mesh.triangles)).astype(np.int64)
 
 
 def _is_inner(mesh: TriangleMesh, hidden: Bools, piece: Ints) -> Bools:
@@ -154,9 +150,3 @@ def _openings(mesh: TriangleMesh, hidden: Bools, piece: Ints) -> tuple[Floats, F
     opening = sum_by(of_edge, lengths, n_pieces)
     moments = np.stack([sum_by(of_edge, lengths * column, n_pieces) for column in ends.mean(axis=1).T], axis=1)
     return opening, moments / np.maximum(opening, np.finfo(float).tiny)[:, None]
-
-
-def _unit_normals(corners: Floats) -> Floats:
-    a, b, c = corners.swapaxes(0, 1)
-    normals = np.cross(b - a, c - a)
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)

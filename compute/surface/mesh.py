@@ -114,8 +114,7 @@ class TriangleMesh:
         corners = self.triangles
         n_vertices = len(self.vertices)
         sides = np.concatenate([corners[:, :2], corners[:, 1:]])
-        graph = coo_array((np.ones(len(sides), dtype=bool), (sides[:, 0], sides[:, 1])), shape=(n_vertices, n_vertices))
-        label = connected_components(graph, directed=False)[1][corners[:, 0]]
+        label = connected_pieces(sides[:, 0], sides[:, 1], n_vertices)[corners[:, 0]]
         _, label = np.unique(label, return_inverse=True)
         by_area = np.argsort(-evened(np.bincount(label, self.areas)), kind="stable")
         return np.argsort(by_area, kind="stable")[label]
@@ -235,6 +234,23 @@ def _check_extent(mesh: TriangleMesh) -> None:
         )
     if not mesh.areas.sum() > SMALLEST_AREA:
         raise MeshError("The faces of the mesh have no area; check the scale of the object and merged vertices.")
+
+
+def connected_pieces(left: Ints, right: Ints, n: int) -> Ints:
+    """Return (n,) the piece of each of n things that hang together in pairs, left with right; numbered from 0."""
+    graph = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n, n))
+    return connected_components(graph, directed=False)[1]
+
+
+def area_vectors(corners: Floats) -> Floats:
+    """Return (T, 3) normals of triangles (T, 3, 3), as long as twice their areas."""
+    a, b, c = corners.swapaxes(0, 1)
+    return np.cross(b - a, c - a)
+
+
+def unit_rows(rows: Floats) -> Floats:
+    """Return rows of length 1; zeros stay."""
+    return rows / np.maximum(np.linalg.norm(rows, axis=-1, keepdims=True), np.finfo(float).tiny)
 
 
 def sum_by(index: Ints, weight: Floats, size: int = 0) -> Floats:

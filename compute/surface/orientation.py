@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from .mesh import Bools, Floats, Ints, TriangleMesh
+from .mesh import Bools, Floats, Ints, TriangleMesh, connected_pieces
 
 # A patch whose openings are longer than this, in units of the root of its area, has no inside.
 LONGEST_OPENING = 1.0
@@ -50,9 +48,7 @@ def _turn_within_patches(mesh: TriangleMesh) -> tuple[Bools, Ints]:
     ends = np.where(joints.agree, right, right + n_triangles)
     opposite = np.where(joints.agree, right + n_triangles, right)
     rows, columns = np.concatenate([left, left + n_triangles]), np.concatenate([ends, opposite])
-    shape = (2 * n_triangles, 2 * n_triangles)
-    label = connected_components(coo_array((np.ones(len(rows), dtype=bool), (rows, columns)), shape), False)[1]
-    sides = label.reshape(2, n_triangles)
+    sides = connected_pieces(rows, columns, 2 * n_triangles).reshape(2, n_triangles)
     patch_name = sides.min(axis=0)
     _, first, patch = np.unique(patch_name, return_index=True, return_inverse=True)
     patch = patch.reshape(-1)

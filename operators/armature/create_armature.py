@@ -10,6 +10,7 @@ from ... import compute
 from ..blender.known_values import mesh_of, present
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.world_shape import Stretch
+from ..mesh_state.palette import srgb_of
 from ..mesh_state.state import read
 from ..messages.sentences import Messages
 from ..messages.user_errors import Refusal
@@ -171,8 +172,7 @@ def bone_ends(skeleton: "compute.Skeleton") -> tuple[NDArray[np.float64], NDArra
 def _colour_bones(armature: bpy.types.Armature, mesh: bpy.types.Mesh, laid: NamedSkeleton, names: list[str]) -> None:
     """Give bones the colours of their parts."""
     linear = read(mesh).parts.colours_of(int(laid.skeleton.part.max()) + 1)[laid.skeleton.part, :3]
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    for name, colour in zip(names, srgb.tolist(), strict=True):
+    for name, colour in zip(names, srgb_of(linear).tolist(), strict=True):
         shown = present(armature.bones[name].color)
         shown.palette = "CUSTOM"
         shown.custom.normal = colour

@@ -30,6 +30,11 @@ def colours_of_labels(n_labels: int) -> NDArray[np.float32]:
     return np.column_stack([np.reshape(rgb, (n_labels, 3)), np.ones(n_labels)]).astype(np.float32)
 
 
+def srgb_of(linear: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return colours as screens and files have them."""
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
 def _components(hexadecimal: str) -> tuple[float, ...]:
     return tuple(component / 255 for component in bytes.fromhex(hexadecimal))
 

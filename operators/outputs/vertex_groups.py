@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ... import compute
 from ..mesh_data.mesh_arrays import read_mesh
-from ..mesh_data.world_shape import size_of
+from ..mesh_data.world_shape import size_of, users_of
 from ..mesh_state.state import read
 from .division import Division
 from .output import Output
@@ -57,7 +57,7 @@ def keep_only(mesh: bpy.types.Mesh, names: tuple[str, ...]) -> None:
 
 def _object_of(mesh: bpy.types.Mesh) -> bpy.types.Object | None:
     """Return an object that uses the mesh; all that do share its groups."""
-    return next((obj for obj in bpy.data.objects if obj.data == mesh), None)
+    return next(iter(users_of(mesh)), None)
 
 
 def _own_groups(mesh: bpy.types.Mesh) -> dict[int, str]:

@@ -119,8 +119,13 @@ def _own_data(obj: bpy.types.Object) -> dict[str, bpy.types.ID | None]:
 
 def rig_of(obj: bpy.types.Object) -> bpy.types.Object | None:
     """Return the armature that deforms an object; None if there is none."""
-    rigs = [modifier.object for modifier in obj.modifiers if isinstance(modifier, bpy.types.ArmatureModifier)]
-    return next((rig for rig in (*rigs, obj.parent) if rig is not None and rig.type == "ARMATURE"), None)
+    return next(iter(rigs_of(obj)), None)
+
+
+def rigs_of(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return the armatures that may move an object: those of its modifiers, and its parent."""
+    moved_by = [modifier.object for modifier in obj.modifiers if isinstance(modifier, bpy.types.ArmatureModifier)]
+    return [rig for rig in (*moved_by, obj.parent) if rig is not None and rig.type == "ARMATURE"]
 
 
 def _flipped(target: DriverTarget) -> DriverTarget:

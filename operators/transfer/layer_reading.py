@@ -16,6 +16,7 @@ from ..outputs import material_slots
 from ..outputs.division import PART
 from ..outputs.part_writer import read_labels
 from . import layer_choices, layers
+from .drivers import rigs_of
 from .layers import Layer
 from .shape_keys import read_shape_keys
 
@@ -92,14 +93,7 @@ def _chosen_groups(obj: bpy.types.Object, choice: LayerChoice) -> list[str]:
 
 
 def _deform_bones(obj: bpy.types.Object) -> set[str]:
-    rigs = [modifier.object for modifier in obj.modifiers if isinstance(modifier, bpy.types.ArmatureModifier)]
-    return {
-        bone.name
-        for rig in (*rigs, obj.parent)
-        if rig is not None and rig.type == "ARMATURE"
-        for bone in data_of(rig, bpy.types.Armature).bones
-        if bone.use_deform
-    }
+    return {bone.name for rig in rigs_of(obj) for bone in data_of(rig, bpy.types.Armature).bones if bone.use_deform}
 
 
 def _groups(obj: bpy.types.Object, names: list[str]) -> Iterator[Layer]:

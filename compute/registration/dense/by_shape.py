@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...progress import Progress, section
-from ...surface.mesh import Floats, Ints
+from ...surface.mesh import Floats, Ints, unit_rows
 from ..eigenfunctions.spectral_shape import farthest_points
 from ..eigenfunctions.zoomout import nearest_rows
 from .confidence import SURE, Landing, landing_confidence
@@ -17,7 +17,7 @@ from .flipped_regions import RoughMap, with_regions_unflipped
 from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, Samples, aligned
 from .point_map import DENSE_SAMPLES
 from .shape_pair import Image, ShapePair
-from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles, unit_rows
+from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles
 
 # Nodes of the deformation, each for at least so many points, and points that are laid onto the target.
 N_NODES = 600

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...surface.heat_smoothing import smoothed
-from ...surface.mesh import Bools, Floats, TriangleMesh, sum_by
+from ...surface.mesh import Bools, Floats, TriangleMesh, area_vectors, sum_by
 from .shape_pair import ShapePair
-from .surface_points import SurfacePoints, area_vectors
+from .surface_points import SurfacePoints
 
 # Below this confidence a vertex is better filled in from its neighbours.
 SURE = 0.5
@@ -48,8 +48,8 @@ def landing_confidence(pair: ShapePair, landing: Landing) -> Floats:
     doubt += (_stretch(mesh, positions, places) / np.log(DOUBTFUL_STRETCH)) ** 4
     doubt += (_flipped_share(pair, landing, places) / DOUBTFUL_FLIPS) ** 2
     confidence = np.where(landing.on_other_wall, 0.0, 1 / (1 + doubt))
-    is_used = np.bincount(mesh.triangles.ravel(), minlength=len(confidence)) > 0
-    doubted = np.where(is_used & (confidence < SURE), 1.0, 0.0)
+    doubted = np.zeros(len(confidence))
+    doubted[mesh.used] = confidence[mesh.used] < SURE
     around = smoothed(mesh, doubted[:, None], SURROUNDINGS * np.sqrt(mesh.areas.sum()))[:, 0]
     # Doubles of a vertex share its edges.
     return np.minimum(confidence, 1 - np.clip(around, 0, 1))[surface.vertex_of_input]

@@ -10,13 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ...surface.mesh import Bools, Floats, Ints
+from ...surface.mesh import Bools, Floats, Ints, connected_pieces, unit_rows
 from .deformation_graph import DeformationGraph, Motion, motion_towards
 from .nonrigid_alignment import Samples
-from .surface_points import unit_rows
 
 # A map is 1 where it is a similarity that keeps the sides, -1 where it is a reflection, near 0 where it is blurred.
 # A region has nodes below the first number and reaches as far as they are below the second.
@@ -119,8 +117,7 @@ def _flipped_regions(graph: DeformationGraph, orientation: Floats) -> list[Bools
     n_nodes = len(orientation)
     low = orientation < UNCLEAR
     pairs = graph.edges[low[graph.edges].all(axis=1)]
-    joined = coo_array((np.ones(len(pairs), dtype=bool), (pairs[:, 0], pairs[:, 1])), shape=(n_nodes, n_nodes))
-    region = connected_components(joined, directed=False)[1]
+    region = connected_pieces(pairs[:, 0], pairs[:, 1], n_nodes)
     masks = [region == number for number in np.unique(region[orientation < FLIPPED]).tolist()]
     return [mask for mask in masks if FEWEST_NODES <= mask.sum() <= LARGEST_SHARE * n_nodes]
 

@@ -14,10 +14,10 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from ...progress import Progress, silent
-from ...surface.mesh import Bools, Floats, Ints
+from ...surface.mesh import Bools, Floats, Ints, unit_rows
 from ..eigenfunctions.spectral_shape import SpectralShape
 from .deformation_graph import FOLLOWED, DeformationGraph, Motion, turned, warped
-from .surface_points import SurfacePoints, SurfaceTree, unit_rows
+from .surface_points import SurfacePoints, SurfaceTree
 
 # How far a step goes beyond the solution of its linear system: limbs slide around their axes slowly without.
 RELAXATION = 1.7

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...surface.mesh import Bools, Floats, Ints
+from ...surface.mesh import Bools, Floats, Ints, area_vectors, unit_rows
 
 # A triangle is found by several places on it where it is large: one for each piece of this many median sides.
 MEDIAN_SIDES = 2.0
@@ -145,14 +145,3 @@ def _lattice(n: int) -> Floats:
     i, j = (index.ravel() for index in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
     i, j = i[i + j < n], j[i + j < n]
     return (np.stack([i, j, n - 1 - i - j], axis=1) + 1 / 3) / n
-
-
-def area_vectors(corners: Floats) -> Floats:
-    """Return (T, 3) normals of triangles (T, 3, 3), as long as twice their areas."""
-    a, b, c = corners.swapaxes(0, 1)
-    return np.cross(b - a, c - a)
-
-
-def unit_rows(rows: Floats) -> Floats:
-    """Return rows of length 1; zeros stay."""
-    return rows / np.maximum(np.linalg.norm(rows, axis=-1, keepdims=True), np.finfo(float).tiny)

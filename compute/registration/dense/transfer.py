@@ -5,14 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...memory import told_if_full
 from ...surface.heat_smoothing import harmonic_fill
-from ...surface.mesh import Bools, Floats, Ints, TriangleMesh
+from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, area_vectors, connected_pieces, unit_rows
 from .correspondence import Correspondence
 from .deformation_graph import nearest_rotations
-from .surface_points import SurfacePoints, SurfaceTree, area_vectors, unit_rows
+from .surface_points import SurfacePoints, SurfaceTree
 
 # Seams are kept between at most this many pieces; a layer with more is taken as it is at each corner.
 MOST_ISLANDS = 400
@@ -86,9 +85,7 @@ def majority_of_polygons(
 def islands(triangles: Ints, values: Floats) -> Ints:
     """Return (T,) the piece of each triangle that hangs together by edges over which corner values (T, 3, c) go on."""
     pairs = _continuous_pairs(triangles, values)
-    n = len(triangles)
-    graph = coo_array((np.ones(len(pairs), dtype=bool), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return connected_pieces(pairs[:, 0], pairs[:, 1], len(triangles)).astype(np.int64)
 
 
 def _continuous_pairs(triangles: Ints, values: Floats) -> Ints:

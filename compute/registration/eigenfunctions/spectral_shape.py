@@ -11,7 +11,7 @@ from ...fem.eigenbasis import Eigenbasis
 from ...fem.space import function_space
 from ...fields.scalar_field import refined_net
 from ...progress import Progress
-from ...surface.mesh import Floats, Ints, TriangleMesh
+from ...surface.mesh import Floats, Ints, TriangleMesh, unit_rows
 from ...surface.orientation import reversed_where, wrongly_wound
 from ...surface.ties import CHOICE
 from .moments import Moments, moments_of, point_areas
@@ -82,7 +82,7 @@ class SpectralShape:
         """(n, 3) unit normal at each point."""
         around = np.repeat(self.area_vectors, 3, axis=0)
         sums = [np.bincount(self.triangles.ravel(), column, len(self.positions)) for column in around.T]
-        return _unit_rows(np.stack(sums, axis=1))
+        return unit_rows(np.stack(sums, axis=1))
 
     @cached_property
     def moments(self) -> Moments:
@@ -171,7 +171,3 @@ def _unit_positions(positions: Floats, triangles: Ints, area: float) -> Floats:
     a, b, c = unit[triangles].swapaxes(0, 1)
     weights = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return unit - np.average((a + b + c) / 3, axis=0, weights=weights)
-
-
-def _unit_rows(rows: Floats) -> Floats:
-    return rows / np.maximum(np.linalg.norm(rows, axis=1), np.finfo(float).tiny)[:, None]

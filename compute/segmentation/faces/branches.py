@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ...surface.mesh import Bools, Floats, Ints, sum_by
+from ...surface.mesh import Bools, Floats, Ints, connected_pieces, sum_by
 from ...surface.ties import evened
 from .arc_areas import HALVED, ArcAreas
 from .face_graph import FaceGraph
@@ -166,9 +166,7 @@ def _sum_pairs(pairs: Ints, weight: Floats, n: int) -> tuple[Ints, Floats]:
 
 def _pieces(graph: FaceGraph, same: Bools) -> Ints:
     left, right = graph.neighbours[same].T
-    n_faces = len(graph.area)
-    joined = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n_faces, n_faces))
-    return connected_components(joined, directed=False)[1]
+    return connected_pieces(left, right, len(graph.area))
 
 
 def _stray_pieces(labels: Ints, branches: Branches, bodies: tuple[int, ...]) -> tuple[Ints, Bools]:

@@ -3,12 +3,10 @@
 from functools import partial
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ...fields.scalar_field import ScalarField, share_below
 from ...surface.cleaning import Surface
-from ...surface.mesh import Bools, Ints, TriangleMesh, sum_by
+from ...surface.mesh import Bools, Ints, TriangleMesh, connected_pieces, sum_by
 from ...surface.ties import ROUNDING, evened, first_largest
 from ..borders.edge_profile import edge_profile
 from ..borders.level_set_borders import Polyline, cross_edges, part_of_border, trace_borders
@@ -62,8 +60,7 @@ def _hills(field: ScalarField, label_of_surface: Ints) -> tuple[Ints, Ints]:
     left, right = np.concatenate([corners[:, :2], corners[:, 1:]]).T
     both = is_above[left] & is_above[right]
     n = len(is_above)
-    joined = coo_array((np.ones(int(both.sum()), dtype=bool), (left[both], right[both])), shape=(n, n))
-    piece = connected_components(joined, directed=False)[1]
+    piece = connected_pieces(left[both], right[both], n)
     _, hill = np.unique(piece[is_above], return_inverse=True)
     n_hills = 1 + int(hill.max(initial=-1))
     of_vertex = np.full(n, n_hills)
@@ -89,9 +86,7 @@ def _is_negative(field: ScalarField, surface: Surface, n_triangles: int) -> Bool
 
 def _numbered_pieces(graph: FaceGraph, is_negative: Bools) -> Ints:
     left, right = graph.neighbours[is_negative[graph.neighbours[:, 0]] == is_negative[graph.neighbours[:, 1]]].T
-    n_faces = len(graph.area)
-    joined = coo_array((np.ones(len(left), dtype=bool), (left, right)), shape=(n_faces, n_faces))
-    piece = connected_components(joined, directed=False)[1][graph.stands_for]
+    piece = connected_pieces(left, right, len(graph.area))[graph.stands_for]
     _, piece = np.unique(piece, return_inverse=True)
     by_area = np.argsort(-evened(sum_by(piece, graph.area)), kind="stable")
     return 1 + np.argsort(by_area, kind="stable")[piece]
