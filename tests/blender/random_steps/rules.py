@@ -92,18 +92,18 @@ class Scope:
 
     Attributes
     ----------
-    active, others : set of str
-        Names of the active and the other selected objects, of their meshes and of all that share these.
+    active, others : set of tuple of str
+        Kind and name of the active and the other selected objects, of their meshes and of all that share these.
     ours : dict of set of str
         What is ours on each mesh and object.
-    traced : set of str
+    traced : set of tuple of str
         Objects that are all ours, and their data.
     """
 
-    active: set[str]
-    others: set[str]
+    active: set[tuple[str, str]]
+    others: set[tuple[str, str]]
     ours: dict[str, set[str]]
-    traced: set[str]
+    traced: set[tuple[str, str]]
 
 
 def beyond(action: str, scope: Scope, before: dict[Place, object], after: dict[Place, object], places: list[Place]):
@@ -118,23 +118,23 @@ def _is_in_reach(reach: Reach, scope: Scope, place: Place, before, after) -> boo
         return kind in reach.makes or _is_own_block(place, after)
     if (kind, name, "") not in after:
         return (kind in reach.removes and not _is_users(place, before)) or _is_own_block(place, before)
-    if _is_ours(scope, place, before, after) and _is_written(reach, scope, name):
+    if _is_ours(scope, place, before, after) and _is_written(reach, scope, (kind, name)):
         return True
     path = f"{kind}/{what}"
     patterns = (
         *reach.anywhere,
-        *(("*",) if name in scope.traced and reach.removes else ()),
-        *(reach.active if name in scope.active else ()),
-        *(reach.others if name in scope.others else ()),
+        *(("*",) if (kind, name) in scope.traced and reach.removes else ()),
+        *(reach.active if (kind, name) in scope.active else ()),
+        *(reach.others if (kind, name) in scope.others else ()),
     )
     return any(fnmatchcase(path, pattern) for pattern in patterns)
 
 
-def _is_written(reach: Reach, scope: Scope, name: str) -> bool:
+def _is_written(reach: Reach, scope: Scope, block: tuple[str, str]) -> bool:
     return (
         "ours" in reach.anywhere
-        or (reach.writes_ours and name in scope.active)
-        or (reach.writes_others and name in scope.others)
+        or (reach.writes_ours and block in scope.active)
+        or (reach.writes_others and block in scope.others)
     )
 
 

@@ -257,6 +257,13 @@ def _complaints() -> dict[str, set[str]]:
     return {mesh.name_full: soundness.unsound(mesh) for mesh in bpy.data.meshes}
 
 
+# The kind of data-block that `belongings` names each type by.
+KINDS = {
+    **dict(OBJECT="objects", MESH="meshes", KEY="shape_keys", MATERIAL="materials"),
+    **dict(CURVE="curves", ARMATURE="armatures"),
+}
+
+
 def _scope() -> rules.Scope:
     active = bpy.context.object
     others = [obj for obj in bpy.context.selected_objects if obj != active]
@@ -265,12 +272,13 @@ def _scope() -> rules.Scope:
     return rules.Scope(of_active, _with_data(others) - of_active, _ours(), _with_data(traced))
 
 
-def _with_data(objects: list[bpy.types.Object]) -> set[str]:
-    """Return the names of objects, their data, their shape keys, and of all objects that share these."""
+def _with_data(objects: list[bpy.types.Object]) -> set[tuple[str, str]]:
+    """Return objects, their data, shape keys and materials of parts, and all objects that share these."""
     data = {obj.data for obj in objects if obj.data is not None}
-    keys = {keys.name_full for one in data if (keys := getattr(one, "shape_keys", None))}
-    sharing = {obj.name_full for obj in bpy.data.objects if obj.data in data}
-    return {*(obj.name_full for obj in objects), *sharing, *keys, *(one.name_full for one in data)}
+    keys = {keys for one in data if (keys := getattr(one, "shape_keys", None))}
+    dressed = {slot for one in data for slot in getattr(one, "materials", ()) if slot and "eigenparts_part" in slot}
+    sharing = {obj for obj in bpy.data.objects if obj.data in data}
+    return {(KINDS.get(one.id_type, ""), one.name_full) for one in {*objects, *sharing, *data, *keys, *dressed}}
 
 
 def _ours() -> dict[str, set[str]]:
