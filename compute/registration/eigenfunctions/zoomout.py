@@ -15,6 +15,8 @@ from ...surface.ties import CHOICE
 MATCHING_SIZES = (17, 17, 20, 24, 29, 35, 42, 50)
 # Query points that are compared with all others at once, which bounds the memory.
 CHUNK = 2000
+# The largest cost of an assignment as a whole number: sums of thousands of such are still exact.
+WHOLE = 2.0**40
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,13 +127,19 @@ def assigned(costs: Floats) -> Ints:
 def cheapest_assignment(costs: Floats) -> tuple[Ints, Ints]:
     """Return the rows and columns of the pairs that cost least, as many as the shorter side of (m, n) costs has.
 
+    Infinite costs are taken where there is no other way; costs that differ by 1e-11 of the range of all are equal.
     Not `scipy.optimize.linear_sum_assignment`: a Python with Blender that has loaded scipy.optimize may never end.
     """
     if costs.size == 0:
         return np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64)
-    # An entry of zero would be no entry.
-    raised = costs - costs.min() + np.finfo(np.float64).tiny
-    rows, columns = min_weight_full_bipartite_matching(csr_array(raised))
+    finite = np.isfinite(costs)
+    lowest, highest = (costs[finite].min(), costs[finite].max()) if finite.any() else (0.0, 0.0)
+    forbidden = highest + (1 + min(costs.shape)) * ((highest - lowest) or 1.0)
+    raised = np.where(finite, costs, forbidden) - lowest
+    # Whole numbers, in which SciPy computes without rounding: with rounding its search may never end. They begin at 1,
+    # as an entry of zero would be no entry.
+    whole = 1 + np.rint(raised * (WHOLE / (raised.max() or 1.0)))
+    rows, columns = min_weight_full_bipartite_matching(csr_array(whole))
     return rows.astype(np.int64), columns.astype(np.int64)
 
 

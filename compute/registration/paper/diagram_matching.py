@@ -52,8 +52,7 @@ class DiagramMatching:
     @cached_property
     def order(self) -> Ints:
         """(k,) the target's function (from 0) that each of the source's is."""
-        best = np.where(np.isfinite(self.distances), self.distances, 1e9).min(axis=2)
-        return assigned(best)
+        return assigned(self.distances.min(axis=2))
 
     @property
     def _chosen(self) -> Floats:
