@@ -10,18 +10,14 @@ from scipy.spatial import cKDTree
 from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints
 from ...surface.ties import evened
-from .hypotheses import Hypotheses, nearest_orthogonal, spectrum_of
+from .hypotheses import nearest_orthogonal, spectrum_of
 from .moments import agreement
 from .spectral_shape import SpectralShape
-from .zoomout import nearest_points, sample_functions, with_constant, zoom_out
+from .zoomout import MATCHING_SIZES, nearest_points, sample_functions, with_constant, zoom_out
 
 # Two candidates are one if their maps of the first functions differ by less, relative to the identity's norm.
 SAME_MAP = 0.3
 COMPARED_FUNCTIONS = 10
-# Cost and relative distance to the next best at which doubt begins: among 400 pairs of poses all below were right.
-DOUBTFUL_COST = 3e-6
-# Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
-LEAST_COST = 2e-9
 # Neighbouring points that land more than this many times farther apart are torn from each other.
 TORN = 3.0
 # What no map does without: at 1000 samples single points near thin features always are.
@@ -94,26 +90,15 @@ def distinct_candidates(best_first: Sequence[Candidate], n_wanted: int) -> list[
     for candidate in best_first:
         if len(kept) == n_wanted:
             break
-        if all(_difference(candidate, better) > SAME_MAP for better in kept):
+        if all(distance_of(candidate.functional_map, better.functional_map) > SAME_MAP for better in kept):
             kept.append(candidate)
     return kept
 
 
-def confidence_of(candidate: Candidate, rivals: Sequence[Candidate]) -> float:
-    """Return 0 to 1: low where a candidate is costly, or where a different one is as good."""
-    others = [rival.cost for rival in rivals if _difference(candidate, rival) > SAME_MAP and not rival.is_torn]
-    tie = min((candidate.cost + LEAST_COST) / (min(others, default=np.inf) + LEAST_COST), 1.0)
-    return fit_of(candidate) * (1 - tie)
-
-
-def fit_of(candidate: Candidate) -> float:
-    """Return 0 to 1: low where a candidate is costly, whatever else there is."""
-    return 0.0 if candidate.is_torn else 1 / (1 + (candidate.cost / DOUBTFUL_COST) ** 2)
-
-
-def _difference(one: Candidate, other: Candidate) -> float:
+def distance_of(one: Floats, other: Floats) -> float:
+    """Return how far two maps, the constant included, are apart on the first functions; the identity's norm is 1."""
     first = slice(1, 1 + COMPARED_FUNCTIONS)
-    gap = one.functional_map[first, first] - other.functional_map[first, first]
+    gap = one[first, first] - other[first, first]
     return float(np.linalg.norm(gap) / np.sqrt(len(gap)))
 
 
@@ -123,11 +108,10 @@ class MapScorer:
     Parameters
     ----------
     source, target : SpectralShape
-    sizes : sequence of int
-        Of the functional maps, rising.
     """
 
-    def __init__(self, source: SpectralShape, target: SpectralShape, sizes: Sequence[int]) -> None:
+    def __init__(self, source: SpectralShape, target: SpectralShape) -> None:
+        sizes = [min(size, source.n_functions, target.n_functions) for size in MATCHING_SIZES]
         self._source, self._target, self._sizes = source, target, sizes
         self._source_samples = sample_functions(source.functions[source.samples], ())
         self._target_samples = sample_functions(target.functions[target.samples], sizes)
@@ -138,23 +122,30 @@ class MapScorer:
         self._normals = source.project(source.normals)[:last]
 
     def score(
-        self, hypotheses: Hypotheses, signs: Mapping[int, int] | None = None, progress: Progress = silent
+        self, starts: Floats, signs: Mapping[int, int] | None = None, progress: Progress = silent
     ) -> list[Candidate]:
         """Return a candidate for each hypothesis, in their order.
 
         Parameters
         ----------
-        hypotheses : Hypotheses
+        starts : (h, K, K) float64
+            The hypotheses, orthogonal maps of the first functions, the constant left out.
         signs : mapping of int to +1 or -1, optional
             Signs that are kept whatever fits better, by the source's function from 0.
         progress : Progress, optional
             May raise `Cancelled`.
         """
         candidates = []
-        for number, start in enumerate(hypotheses.maps):
-            progress(number / len(hypotheses), "Refining what was found")
+        for number, start in enumerate(starts):
+            progress(number / len(starts), "Refining what was found")
             candidates.append(self._candidate(start, signs or {}))
         return candidates
+
+    def fine_curvature(self, candidate: Candidate) -> float:
+        """Return the correlation of fine curvature over the map of a candidate, from -1 to 1."""
+        source, samples = self._source, self._target.samples
+        nearest = nearest_points(candidate.functional_map, source.functions, self._target.functions[samples])
+        return _correlation(source.fine_curvature[nearest], self._target.fine_curvature[samples])
 
     def _candidate(self, start: Floats, signs: Mapping[int, int]) -> Candidate:
         source, target = self._source_samples, self._target_samples

@@ -1,6 +1,6 @@
 """Matching: order, sign, mixing and handedness of the eigenfunctions of two shapes, with nothing to click."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -12,9 +12,12 @@ from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
+from ...surface.ties import evened
+from .confidence import probabilities
 from .hypotheses import Effort, find_hypotheses, spectrum_of
-from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
+from .map_scoring import Candidate, MapScorer, distinct_candidates, ranked
 from .pair_memory import require_pair
+from .self_maps import find_rivals
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded
 
@@ -27,6 +30,8 @@ EFFORTS = (
 # A matching at least this sure is not searched for any further.
 SURE = 0.75
 MAX_ALTERNATIVES = 3
+# Different candidates whose probabilities are compared.
+MAX_WEIGHED = 6
 # Signs can be given for the functions that hypotheses are made of; the rest follows from them.
 FLIPPABLE = max(EFFORTS[0].levels)
 
@@ -41,9 +46,10 @@ class Matching:
         Near-orthogonal, target x source, the constant left out, for functions on surfaces of area 1: the source's
         functions, carried to the target, are the target's functions @ map.
     confidence : float
-        From 0 to 1; above one half means that the matching is very likely right.
+        The probability, from 0 to 1, that the matching is right.
     alternatives : tuple of Matching
-        At most three others, best first, without alternatives of their own.
+        At most three others, the likeliest first, without alternatives of their own; all probabilities together are
+        at most 1, and what is left is for none of them.
     same_topology : bool
         Whether both shapes have the same triangles, so that vertices correspond by their numbers.
     mirrored : bool
@@ -184,46 +190,55 @@ def match_shapes(
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
     if mirrored:
         source = source.mirrored()
-    n_available = min(source.n_functions, target.n_functions)
-    scorer = MapScorer(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+    scorer = MapScorer(source, target)
     if signs:
-        candidates, rivals = _candidates_with_signs(source, target, scorer, signs, progress)
+        weighed = _weighed_with_signs(source, target, scorer, signs, progress)
     else:
-        candidates = rivals = _ranked_candidates(source, target, scorer, progress)
-    best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
-    confidence = confidence_of(best, rivals)
-    # What the best one leaves over is for the alternatives, if they fit.
-    alternatives = tuple(_matching_of(other, (1 - confidence) * fit_of(other), mirrored) for other in others)
-    return replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
+        weighed = _weighed_candidates(source, target, scorer, progress)
+    best, *others = (_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed)
+    return replace(best, alternatives=tuple(others[:MAX_ALTERNATIVES]))
 
 
-def _ranked_candidates(
+def _weighed_candidates(
     source: SpectralShape, target: SpectralShape, scorer: MapScorer, progress: Progress
-) -> list[Candidate]:
-    """Return scored hypotheses, best first; the search is widened until the best of them is sure."""
+) -> list[tuple[Candidate, float]]:
+    """Return different candidates with their probabilities; the search is widened until the best of them is sure."""
     spectra = spectrum_of(source), spectrum_of(target)
-    best_first: list[Candidate] = []
+    candidates: list[Candidate] = []
+    weighed: list[tuple[Candidate, float]] = []
     for number, effort in enumerate(EFFORTS):
         searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
         hypotheses = find_hypotheses(*spectra, effort, progress=searching)
-        scored = scorer.score(hypotheses.best(effort.n_refined), progress=refining)
-        best_first = ranked(best_first + scored)
-        if confidence_of(best_first[0], best_first) >= SURE:
+        found, rivalling = _halves(refining)
+        candidates += scorer.score(hypotheses.best(effort.n_refined).maps, progress=found)
+        rivals = find_rivals(ranked(candidates), source.self_maps, target.self_maps)
+        candidates += scorer.score(rivals, progress=rivalling)
+        weighed = _weighed(distinct_candidates(ranked(candidates), MAX_WEIGHED), scorer)
+        if weighed[0][1] >= SURE:
             break
-    return best_first
+    return weighed
 
 
-def _candidates_with_signs(
+def _weighed_with_signs(
     source: SpectralShape, target: SpectralShape, scorer: MapScorer, signs: Mapping[int, int], progress: Progress
-) -> tuple[list[Candidate], list[Candidate]]:
-    """Return scored hypotheses that keep given signs, best first, and with them the best that do not need to."""
+) -> list[tuple[Candidate, float]]:
+    """Return different candidates that keep given signs, with their probabilities among those that need not."""
     keeping, leaving = _halves(progress)
     effort, spectra = EFFORTS[0], (spectrum_of(source), spectrum_of(target))
     scored = []
     for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
         hypotheses = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
-        scored.append(ranked(scorer.score(hypotheses, given, refining)))
-    return scored[0], scored[0] + scored[1]
+        scored.append(ranked(scorer.score(hypotheses.maps, given, refining)))
+    kept = distinct_candidates(scored[0], 1 + MAX_ALTERNATIVES)
+    weighed = _weighed(distinct_candidates(kept + scored[1], len(kept) + MAX_WEIGHED), scorer)
+    return [(candidate, probability) for candidate, probability in weighed if candidate in kept]
+
+
+def _weighed(candidates: Sequence[Candidate], scorer: MapScorer) -> list[tuple[Candidate, float]]:
+    """Return candidates with their probabilities, the likeliest first."""
+    likely = probabilities(candidates, [scorer.fine_curvature(candidate) for candidate in candidates])
+    order = np.argsort(-evened(likely), kind="stable")
+    return [(candidates[number], float(likely[number])) for number in order.tolist()]
 
 
 def _halves(progress: Progress) -> tuple[Progress, Progress]:

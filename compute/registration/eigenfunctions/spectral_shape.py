@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.linalg import splu
 
 from ...fem.assembly import stiffness_matrix
 from ...fem.eigenbasis import Eigenbasis
@@ -21,9 +22,10 @@ N_SAMPLES = 1000
 # Functions that moments are taken of: the last level of matching and the places a function may move by.
 MOMENT_FUNCTIONS = 18
 # Attributes that matching asks of a shape, which keeps them.
-KEPT = ("samples", "moments", "normals", "curvature")
+KEPT = ("samples", "moments", "normals", "curvature", "fine_curvature", "self_maps")
 # Time of the smoothing of curvature, in units of the area: details below 2 % of the shape's size do not count.
 CURVATURE_TIME = 5e-4
+FINE_TIME = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +104,24 @@ class SpectralShape:
         integrated = np.einsum("ij,ij->i", bending, self.normals) / 2
         coefficients = self.functions.T @ integrated / (1 + CURVATURE_TIME * self.values)
         smooth = self.functions @ coefficients
+        return np.tanh(smooth / (3 * np.median(np.abs(smooth)) + np.finfo(float).tiny))
+
+    @cached_property
+    def self_maps(self) -> list[Floats]:
+        """Maps (k, k) of the functions onto themselves, the constant included, under which the shape nearly fits."""
+        from .self_maps import find_self_maps
+
+        return find_self_maps(self)
+
+    @cached_property
+    def fine_curvature(self) -> Floats:
+        """(n,) mean curvature smoothed for a short time, finer than functions show it, cut off softly.
+
+        Faces, toes and knees tell front from back where a shape fits itself turned round.
+        """
+        stiffness = stiffness_matrix(function_space(TriangleMesh(self.positions, self.triangles), 1))
+        integrated = np.einsum("ij,ij->i", stiffness @ self.positions, self.normals) / 2
+        smooth = splu((diags_array(self.point_areas) + FINE_TIME * stiffness).tocsc()).solve(integrated)
         return np.tanh(smooth / (3 * np.median(np.abs(smooth)) + np.finfo(float).tiny))
 
     def shares_at_points(self, labels: Ints, n_labels: int) -> csr_array:
