@@ -15,7 +15,7 @@ from .map_scoring import SAME_MAP, Candidate, MapScorer, distance_of, distinct_c
 from .spectral_shape import SpectralShape
 
 # Many seeds on few functions: half turns of people are seldom among the best of them.
-SELF_EFFORT = Effort(levels=(6, 8, 12), beam_width=100, n_seeds=30, n_branches=2, n_kept=20, n_refined=14)
+SELF_EFFORT = Effort(levels=(6, 8, 12, 16), beam_width=100, n_seeds=30, n_branches=2, n_kept=20, n_refined=14)
 # Self-maps that are kept, the identity left out.
 MAX_SELF_MAPS = 5
 # Maps whose rivals are tried, and rivals that are refined for one pair of shapes.
