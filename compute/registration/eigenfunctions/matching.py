@@ -21,12 +21,8 @@ from .self_maps import find_rivals
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded
 
-# Widths of the search; the next effort is made only where the ones before leave doubt.
-EFFORTS = (
-    Effort(),
-    Effort(n_seeds=30, n_branches=2, n_kept=12, n_refined=10),
-    Effort(levels=(6, 8, 10, 12, 14, 16), n_seeds=16, n_branches=2, n_kept=10, n_refined=10),
-)
+# Widths of the search; the second effort is made only where the first leaves doubt.
+EFFORTS = (Effort(), Effort(n_seeds=30, n_branches=2, n_kept=12, n_refined=10))
 # A matching at least this sure is not searched for any further.
 SURE = 0.75
 MAX_ALTERNATIVES = 3
@@ -188,19 +184,25 @@ def match_shapes(
     progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
+    # A shape's mirror image fits itself in the same ways.
+    self_maps = source.self_maps, target.self_maps
     if mirrored:
         source = source.mirrored()
     scorer = MapScorer(source, target)
     if signs:
         weighed = _weighed_with_signs(source, target, scorer, signs, progress)
     else:
-        weighed = _weighed_candidates(source, target, scorer, progress)
+        weighed = _weighed_candidates(source, target, scorer, self_maps, progress)
     best, *others = (_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed)
     return replace(best, alternatives=tuple(others[:MAX_ALTERNATIVES]))
 
 
 def _weighed_candidates(
-    source: SpectralShape, target: SpectralShape, scorer: MapScorer, progress: Progress
+    source: SpectralShape,
+    target: SpectralShape,
+    scorer: MapScorer,
+    self_maps: tuple[list[Floats], list[Floats]],
+    progress: Progress,
 ) -> list[tuple[Candidate, float]]:
     """Return different candidates with their probabilities; the search is widened until the best of them is sure."""
     spectra = spectrum_of(source), spectrum_of(target)
@@ -211,7 +213,7 @@ def _weighed_candidates(
         hypotheses = find_hypotheses(*spectra, effort, progress=searching)
         found, rivalling = _halves(refining)
         candidates += scorer.score(hypotheses.best(effort.n_refined).maps, progress=found)
-        rivals = find_rivals(ranked(candidates), source.self_maps, target.self_maps)
+        rivals = find_rivals(ranked(candidates), *self_maps)
         candidates += scorer.score(rivals, progress=rivalling)
         weighed = _weighed(distinct_candidates(ranked(candidates), MAX_WEIGHED), scorer)
         if weighed[0][1] >= SURE:

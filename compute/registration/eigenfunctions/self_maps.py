@@ -15,11 +15,11 @@ from .map_scoring import SAME_MAP, Candidate, MapScorer, distance_of, distinct_c
 from .spectral_shape import SpectralShape
 
 # Many seeds on few functions: half turns of people are seldom among the best of them.
-SELF_EFFORT = Effort(levels=(6, 8, 12, 16), beam_width=100, n_seeds=30, n_branches=2, n_kept=20, n_refined=14)
+SELF_EFFORT = Effort(levels=(6, 8, 12, 16), beam_width=60, n_seeds=20, n_branches=2, n_kept=10, n_refined=10)
 # Self-maps that are kept, the identity left out.
 MAX_SELF_MAPS = 5
 # Maps whose rivals are tried, and rivals that are refined for one pair of shapes.
-MAX_RIVALLED, MAX_RIVALS = 2, 16
+MAX_RIVALLED, MAX_RIVALS = 2, 12
 
 
 def find_self_maps(shape: SpectralShape) -> list[Floats]:

@@ -4,6 +4,8 @@ import numpy as np
 
 from compute.analysis.analysis import Analysis
 from compute.analysis.analyze import analyze
+from compute.registration.eigenfunctions.spectral_shape import spectral_shape
+from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
 from compute.surface.mesh import TriangleMesh
 from tests.shapes import icosphere
 
@@ -50,3 +52,10 @@ def mirror_image(mesh: TriangleMesh) -> TriangleMesh:
 def quick(mesh: TriangleMesh) -> Analysis:
     """Return an analysis as far as matching needs it, which has functions of its own."""
     return analyze(mesh, n_functions=2, order=1)
+
+
+def landed_vertices(matching, source, target) -> np.ndarray:
+    """Return the source's node that each vertex of the target lands on."""
+    here, there = spectral_shape(source.matching_basis), spectral_shape(target.matching_basis)
+    of_vertex = there.functions[np.argsort(there.node)][: len(target.mesh.vertices)]
+    return here.node[nearest_points(with_constant(matching.map), here.functions, of_vertex)]

@@ -5,15 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compute.registration.eigenfunctions.hypotheses import Hypotheses
-from compute.registration.eigenfunctions.map_scoring import (
-    DOUBTFUL_COST,
-    MapScorer,
-    confidence_of,
-    distinct_candidates,
-    fit_of,
-    ranked,
-)
+from compute.registration.eigenfunctions.map_scoring import MapScorer, distinct_candidates, ranked
 from compute.registration.eigenfunctions.spectral_shape import spectral_shape
 from tests.compute.registration.shapes import lumpy_ball, quick
 
@@ -44,18 +36,6 @@ def test_a_wrong_map_costs_more(candidates):
 def test_an_inside_out_map_is_last_whatever_it_costs(candidates):
     turned = replace(candidates[0], orientation=-1.0)
     assert ranked([turned, replace(candidates[0], commutation=1e6)])[-1] is turned
-    assert fit_of(turned) == 0
-
-
-def test_the_doubtful_cost_halves_the_fit(candidates):
-    factor = DOUBTFUL_COST / replace(candidates[0], commutation=1.0).cost
-    assert fit_of(replace(candidates[0], commutation=factor)) == pytest.approx(0.5)
-
-
-def test_a_rival_as_good_takes_all_confidence(candidates):
-    best, other = candidates
-    assert confidence_of(best, [best]) > 0.99
-    assert confidence_of(best, [best, replace(best, functional_map=other.functional_map)]) == 0
 
 
 def test_maps_that_differ_little_are_one(candidates):

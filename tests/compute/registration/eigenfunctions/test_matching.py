@@ -13,7 +13,15 @@ from compute.registration.eigenfunctions.spectral_shape import SpectralShape, sp
 from compute.registration.eigenfunctions.zoomout import cheapest_assignment, nearest_points, with_constant
 from compute.surface.mesh import TriangleMesh
 from examples import hand, quadruped
-from tests.compute.registration.shapes import PAIRED_LUMPS, lumpy_ball, mirror_image, moved, quick, shuffled
+from tests.compute.registration.shapes import (
+    PAIRED_LUMPS,
+    landed_vertices,
+    lumpy_ball,
+    mirror_image,
+    moved,
+    quick,
+    shuffled,
+)
 from tests.shapes import icosphere, torus
 
 
@@ -29,13 +37,6 @@ def paired():
 
 def shape_of(analysis) -> SpectralShape:
     return spectral_shape(analysis.matching_basis)
-
-
-def landed_vertices(matching, source, target) -> np.ndarray:
-    """Return the source's node that each vertex of the target lands on."""
-    here, there = shape_of(source), shape_of(target)
-    of_vertex = there.functions[np.argsort(there.node)][: len(target.mesh.vertices)]
-    return here.node[nearest_points(with_constant(matching.map), here.functions, of_vertex)]
 
 
 def share_at(matching, source, target, expected) -> float:
