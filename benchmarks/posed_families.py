@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from compute.fem.lagrange import reference_element
 from compute.registration.dense.surface_points import nearest_in_triangles
-from compute.surface.mesh import Floats, Ints, TriangleMesh
+from compute.surface.mesh import Floats, Ints, TriangleMesh, connected_pieces
 
 # Folder and stem of the files; the poses of a family share vertices and faces.
 FAMILIES = {
@@ -93,6 +93,27 @@ def decimated(mesh: TriangleMesh, share: float = DECIMATED_SHARE) -> TriangleMes
     target = int(share * len(mesh.triangles))
     work.meshing_decimation_quadric_edge_collapse(targetfacenum=target, preservetopology=True)
     return shuffled(_mesh_of(work))
+
+
+def noised(mesh: TriangleMesh) -> TriangleMesh:
+    """Return the mesh with vertices moved at random by about an eighth of an edge, shuffled."""
+    corners = mesh.vertices[mesh.triangles]
+    edge = np.linalg.norm(corners[:, 0] - corners[:, 1], axis=1).mean()
+    shift = np.random.default_rng(1).normal(size=mesh.vertices.shape)
+    return shuffled(TriangleMesh(mesh.vertices + 0.15 * edge * shift, mesh.triangles))
+
+
+def cut_open(mesh: TriangleMesh) -> TriangleMesh:
+    """Return the remeshed surface without the 3 % of its triangles around a random one, and without what that cuts off."""
+    even = remeshed(mesh)
+    centre = even.vertices[even.triangles].mean(axis=1)
+    away = np.linalg.norm(centre - centre[np.random.default_rng(2).integers(len(centre))], axis=1)
+    left = TriangleMesh(even.vertices, even.triangles[away > np.quantile(away, 0.03)])
+    ends = left.edges.vertices.T
+    piece = connected_pieces(*ends, len(left.vertices))[left.triangles[:, 0]]
+    kept = left.triangles[piece == np.bincount(piece).argmax()]
+    used, corner = np.unique(kept, return_inverse=True)
+    return TriangleMesh(left.vertices[used], corner.reshape(-1, 3))
 
 
 def shuffled(mesh: TriangleMesh, seed: int = 0) -> TriangleMesh:

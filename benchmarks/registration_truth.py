@@ -10,7 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.posed_families import Mirror, Pose, SurfacePoints, closest_points, decimated, remeshed
+from benchmarks.posed_families import (
+    Mirror,
+    Pose,
+    SurfacePoints,
+    closest_points,
+    cut_open,
+    decimated,
+    noised,
+    remeshed,
+)
 from compute.analysis.analysis import Analysis
 from compute.analysis.analyze import analyze
 from compute.fem.lagrange import reference_element
@@ -25,6 +34,8 @@ COPIES: dict[str, Callable[[TriangleMesh], TriangleMesh]] = {
     "same": lambda mesh: mesh,
     "remeshed": remeshed,
     "decimated": decimated,
+    "noised": noised,
+    "cut open": cut_open,
     "35 %": partial(decimated, share=0.35),
     "25 %": partial(decimated, share=0.25),
 }

@@ -184,15 +184,13 @@ def match_shapes(
     progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
-    # A shape's mirror image fits itself in the same ways.
-    self_maps = source.self_maps, target.self_maps
-    if mirrored:
-        source = source.mirrored()
-    scorer = MapScorer(source, target)
+    seen = source.mirrored() if mirrored else source
+    scorer = MapScorer(seen, target)
     if signs:
-        weighed = _weighed_with_signs(source, target, scorer, signs, progress)
+        weighed = _weighed_with_signs(seen, target, scorer, signs, progress)
     else:
-        weighed = _weighed_candidates(source, target, scorer, self_maps, progress)
+        # A shape's mirror image fits itself in the same ways as the shape.
+        weighed = _weighed_candidates(seen, target, scorer, (source.self_maps, target.self_maps), progress)
     best, *others = (_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed)
     return replace(best, alternatives=tuple(others[:MAX_ALTERNATIVES]))
 
