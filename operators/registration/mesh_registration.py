@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 
 import bpy
 
+from ... import compute
 from ..blender.known_values import mesh_of, present
 from ..mesh_data.unfinished_meshes import modifiers_that_add, unfinished
 from ..mesh_data.world_shape import users_of
@@ -223,6 +224,8 @@ def _summary(reference: str, shapes: tuple[RegisteredShape, ...]) -> str:
 def _doubts(shape: RegisteredShape, objects: list[bpy.types.Object]) -> tuple[str, ...]:
     """Return what is told where a matching is not sure, with what of the objects may be the cause."""
     confidence = shape.matching.confidence
+    if not shape.matching.is_consistent:
+        return (f"{shape.name}: {compute.CONTRADICTS}",)
     if confidence > registration_record.SURE:
         return ()
     is_unsure = f"{shape.name} is matched with a confidence of {confidence:.0%} only; look at its parts."

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...progress import Progress, section, silent
-from ...surface.mesh import Floats, Ints
+from ...surface.mesh import Floats
 from ...surface.ties import first_least
 from .hypotheses import Hypotheses
 from .map_scoring import (
