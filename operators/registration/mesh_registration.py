@@ -224,9 +224,9 @@ def _summary(reference: str, shapes: tuple[RegisteredShape, ...]) -> str:
 def _doubts(shape: RegisteredShape, objects: list[bpy.types.Object]) -> tuple[str, ...]:
     """Return what is told where a matching is not sure, with what of the objects may be the cause."""
     confidence = shape.matching.confidence
-    if not shape.matching.is_consistent:
-        return (f"{shape.name}: {compute.CONTRADICTS}",)
     if confidence > registration_record.SURE:
         return ()
     is_unsure = f"{shape.name} is matched with a confidence of {confidence:.0%} only; look at its parts."
+    if not shape.matching.is_consistent:
+        is_unsure = f"{shape.name}: {compute.CONTRADICTS}"
     return (is_unsure, *filter(None, (unfinished(obj.name, modifiers_that_add(obj)) for obj in objects)))
