@@ -125,7 +125,7 @@ class _Pair:
     def is_sure_of_another(self, functional_map: Floats) -> bool:
         """Whether the best map is sure by itself, and another than this one."""
         best = self.rivals()[0]
-        is_sure = confidence_of(best, self.candidates) > SURE_OF_ANOTHER
+        is_sure = self.matching.same_topology or confidence_of(best, self.candidates) > SURE_OF_ANOTHER
         return is_sure and _difference(_map_of(best), functional_map) > SAME_MAP
 
 
