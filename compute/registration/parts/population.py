@@ -77,6 +77,8 @@ def register(
 ) -> list[Segmentation]:
     """Divide shapes into the same parts.
 
+    Three shapes or more are matched among each other, too, so that a matching that is wrong is put right by the others.
+
     Parameters
     ----------
     analyses : sequence of Analysis
@@ -93,7 +95,7 @@ def register(
     -------
     list of Segmentation
         One for each shape: equal label = same part. A part without a partner on the reference has a label that no
-        other shape has.
+        other shape has. One whose matching contradicts those of the others says so among its warnings.
 
     Raises
     ------
