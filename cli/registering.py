@@ -6,9 +6,11 @@ import argparse
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TypeAlias
 
 import bpy
 
+from .. import compute
 from ..compute.errors import EngineError
 from ..compute.progress import silent
 from ..operators.blender.known_values import mesh_of
@@ -16,7 +18,7 @@ from ..operators.messages.user_errors import Refusal
 from ..operators.registration import mesh_registration, shape_registration
 from ..operators.registration.match_options import MatchOptions
 from ..operators.registration.mesh_registration import SharedParts
-from ..operators.registration.shape_registration import PreparedReference
+from ..operators.registration.shape_registration import MatchableShape, PreparedReference
 from . import formats
 from .formats import OpenFile
 from .objects import analysis_settings, chosen_objects, report_each, row_of
@@ -33,6 +35,10 @@ class Reference:
     shared: SharedParts
     # What was mended when it was read.
     repairs: list[str]
+
+
+# By the name of an object, its shape and how it is matched, or what is wrong with it.
+Matched: TypeAlias = dict[str, tuple[MatchableShape, compute.Matching] | Refusal | EngineError]
 
 
 class Register:
@@ -58,10 +64,10 @@ class Register:
         # The reference opens a file of its own, so it comes first.
         reference = self._reference
         file = chosen_objects(formats.load(path), self._options.object)
-        if path.resolve() != self._options.source.resolve():
-            return report_each(file, self._divide)
-        shown = bpy.data.objects[reference.prepared.name]
-        return report_each(file, lambda obj: self._show(obj) if obj == shown else self._divide(obj, shown))
+        is_source = path.resolve() == self._options.source.resolve()
+        shown = bpy.data.objects[reference.prepared.name] if is_source else None
+        matched = self._match_all([obj for obj in file.objects if obj != shown])
+        return report_each(file, lambda obj: self._show(obj) if obj == shown else self._divide(obj, matched, shown))
 
     @cached_property
     def _reference(self) -> Reference:
@@ -76,12 +82,28 @@ class Register:
         shown = mesh_registration.write_reference(obj, prepared)
         return row_of(obj, shown.labels, prepared.result, shown.messages)
 
-    def _divide(self, obj: bpy.types.Object, reference: bpy.types.Object | None = None) -> ObjectRow:
+    def _match_all(self, objects: list[bpy.types.Object]) -> Matched:
+        """Return the objects' shapes and how they are matched; of those that cannot be, the error."""
+        prepared, shared = self._reference.prepared, self._reference.shared
+        shapes: dict[str, MatchableShape] = {}
+        errors: Matched = {}
+        for obj in objects:
+            try:
+                given = mesh_registration.read_target(bpy.context, obj, shared.settings)
+                shapes[obj.name] = shape_registration.matchable_shape(given, silent)
+            except (Refusal, EngineError) as error:
+                errors[obj.name] = error
+        matchings = shape_registration.match_all(prepared, list(shapes.values()), shared.options, silent)
+        return errors | dict(zip(shapes, zip(shapes.values(), matchings, strict=True), strict=True))
+
+    def _divide(self, obj: bpy.types.Object, matched: Matched, reference: bpy.types.Object | None) -> ObjectRow:
         """Give a mesh the parts of the reference, which is an object of the same file or of another."""
         prepared, shared = self._reference.prepared, self._reference.shared
-        given = mesh_registration.read_target(bpy.context, obj, shared.settings)
+        found = matched[obj.name]
+        if isinstance(found, Exception):
+            raise found
         first_free = max(self._first_free, prepared.highest_label + 1)
-        shape = shape_registration.register_one(prepared, given, shared.options, first_free, silent)
+        shape = shape_registration.divide(prepared, obj.name, *found, shared.options, first_free, silent)
         messages = mesh_registration.write_target(mesh_of(obj), shape, shared, reference)
         self._first_free = max(first_free, shape.highest_label + 1)
         row = row_of(obj, shape.labels, shape.result, messages)

@@ -43,9 +43,12 @@ from .registration.eigenfunctions.matching import Matching as Matching
 from .registration.eigenfunctions.matching import match as match
 from .registration.eigenfunctions.matching import matching_shape as matching_shape
 from .registration.paper.diagram_matching import match_shape_diagrams as match_shape_diagrams
+from .registration.parts.population import CONTRADICTS as CONTRADICTS
 from .registration.parts.population import Reference as Reference
+from .registration.parts.population import agreed_matchings as agreed_matchings
 from .registration.parts.population import label_matched as label_matched
 from .registration.parts.population import match_divisible as match_divisible
+from .registration.parts.population import match_members as match_members
 from .registration.parts.population import prepare_reference as prepare_reference
 from .registration.parts.population import register as register
 from .registration.parts.population import with_parts as with_parts

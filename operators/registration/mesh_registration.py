@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 
 import bpy
 
+from ... import compute
 from ..blender.known_values import mesh_of, present
 from ..mesh_data.unfinished_meshes import modifiers_that_add, unfinished
 from ..mesh_data.world_shape import users_of
@@ -226,4 +227,6 @@ def _doubts(shape: RegisteredShape, objects: list[bpy.types.Object]) -> tuple[st
     if confidence > registration_record.SURE:
         return ()
     is_unsure = f"{shape.name} is matched with a confidence of {confidence:.0%} only; look at its parts."
+    if not shape.matching.is_consistent:
+        is_unsure = f"{shape.name}: {compute.CONTRADICTS}"
     return (is_unsure, *filter(None, (unfinished(obj.name, modifiers_that_add(obj)) for obj in objects)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -25,10 +26,11 @@ CORRECTED_BEFORE = (
 
 # Of shapes that are kept: points, 1 kB of memory each. Of matchings: how many.
 RECENT_POINTS = 100_000
-RECENT_MATCHINGS = 32
-# How much of the time of preparing a mesh its analysis takes, and of registering one its matching.
+RECENT_MATCHINGS = 128
+# How much of the time of preparing a mesh its analysis takes.
 ANALYSIS_SHARE = 0.6
-MATCHING_SHARE = 0.7
+# Where in the time of registering meshes the first, the next and the last stage end.
+STAGES = (0.0, 0.4, 0.8, 1.0)
 
 _recent_shapes: Recent[MatchableShape] = Recent(RECENT_POINTS)
 _recent_matchings: Recent[compute.Matching] = Recent(RECENT_MATCHINGS)
@@ -158,35 +160,46 @@ def register_all(
     first_free : int
         The least label for parts without a partner on the reference.
     """
-    n_steps = 2 * len(targets) + 1
+    analyzing, matching, dividing = (compute.section(progress, *ends) for ends in pairwise(STAGES))
+    n = len(targets)
     # All are analyzed first: what cannot be is told before the longer part begins.
     source, *others = (
-        _recall_shape(given, _step(progress, k, n_steps)) for k, given in enumerate((reference, *targets))
+        _recall_shape(given, _step(analyzing, k, n + 1)) for k, given in enumerate((reference, *targets))
     )
     prepared = prepare_reference(reference.name, source, shown)
+    matchings = match_all(prepared, others, options, matching)
     first_free = max(first_free, prepared.highest_label + 1)
     shapes: list[RegisteredShape] = []
     for number, (given, target) in enumerate(zip(targets, others, strict=True)):
-        named = compute.naming(_step(progress, len(targets) + 1 + number, n_steps), given.name)
-        matching = _recall_matching(prepared, target, options, compute.section(named, 0, MATCHING_SHARE))
-        carrying = compute.section(named, MATCHING_SHARE, 1)
-        shapes.append(_divide(prepared, given.name, target, matching, options, first_free, carrying))
+        step = compute.naming(_step(dividing, number, n), given.name)
+        shapes.append(divide(prepared, given.name, target, matchings[number], options, first_free, step))
         first_free = max(first_free, shapes[-1].highest_label + 1)
     progress(1.0, "Done")
     return Registration(prepared, tuple(shapes))
 
 
-def register_one(
-    reference: PreparedReference,
-    target: AnalysisInput,
-    options: MatchOptions,
-    first_free: int,
-    progress: compute.Progress,
-) -> RegisteredShape:
-    """Return a mesh divided into the parts of a reference; its own are numbered from ``first_free``."""
-    shape = matchable_shape(target, progress)
-    matching = _match(reference, shape, options, progress)
-    return _divide(reference, target.name, shape, matching, options, first_free, progress)
+def match_all(
+    reference: PreparedReference, targets: list[MatchableShape], options: MatchOptions, progress: compute.Progress
+) -> list[compute.Matching]:
+    """Return the best matchings of a reference with targets, such that they agree with each other, and keep them.
+
+    What the user chose stays as it is.
+    """
+    matching, agreeing = compute.section(progress, 0, 0.5), compute.section(progress, 0.5, 1)
+    n = len(targets)
+    own = [_recall_matching(reference, target, options, _step(matching, k, n)) for k, target in enumerate(targets)]
+    if options.flips or options.alternative:
+        return own
+
+    def match_pairs(pairs: list[tuple[int, int]], progress: compute.Progress) -> list[compute.Matching]:
+        steps = (_step(progress, number, len(pairs)) for number in range(len(pairs)))
+        return [_recall_link(targets[one], targets[two], step) for (one, two), step in zip(pairs, steps, strict=True)]
+
+    shapes = [target.shape for target in targets]
+    agreed = compute.agreed_matchings(reference.matched, shapes, own, match_pairs, agreeing)
+    for target, found in zip(targets, agreed, strict=True):
+        _recent_matchings.put(_key_of_pair(reference.key, target, options), found, 1)
+    return agreed
 
 
 def matchable_shape(
@@ -226,6 +239,30 @@ def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> P
     )
 
 
+def divide(
+    reference: PreparedReference,
+    name: str,
+    target: MatchableShape,
+    best: compute.Matching,
+    options: MatchOptions,
+    first_free: int,
+    progress: compute.Progress,
+) -> RegisteredShape:
+    """Return a target divided by the matching that was chosen."""
+    matchings = (best, *best.alternatives)
+    alternative = options.alternative % len(matchings)
+    diagrams = compute.match_shape_diagrams(reference.matched.shape.shape, target.shape.shape)
+    return RegisteredShape(
+        name=name,
+        result=target.result,
+        labels=compute.label_matched(reference.matched, target.shape, matchings[alternative], first_free, progress),
+        matching=matchings[alternative],
+        alternative=alternative,
+        n_alternatives=len(matchings) - 1,
+        by_diagrams=tuple(np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order)).tolist()),
+    )
+
+
 def _recall_shape(given: AnalysisInput, progress: compute.Progress) -> MatchableShape:
     """Return the shape of a mesh as it was prepared before, or prepare and keep it."""
     known = _recent_shapes.get(_key_of(given))
@@ -251,12 +288,25 @@ def _recall_matching(
     reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
     """Return the best matching as it was found before, or find and keep it."""
-    key = key_of([reference.key, target.key, sorted(options.flips.items()), options.mirrored])
+    return _recall(_key_of_pair(reference.key, target, options), lambda: _match(reference, target, options, progress))
+
+
+def _recall_link(source: MatchableShape, target: MatchableShape, progress: compute.Progress) -> compute.Matching:
+    """Return the matching of two targets as it was found before, or find and keep it."""
+    key = _key_of_pair(source.key, target, MatchOptions())
+    return _recall(key, lambda: compute.match_members(source.shape, target.shape, progress))
+
+
+def _recall(key: str, find: Callable[[], compute.Matching]) -> compute.Matching:
     known = _recent_matchings.get(key)
     if known is None:
-        known = _match(reference, target, options, progress)
+        known = find()
         _recent_matchings.put(key, known, 1)
     return known
+
+
+def _key_of_pair(source: str, target: MatchableShape, options: MatchOptions) -> str:
+    return key_of([source, target.key, sorted(options.flips.items()), options.mirrored])
 
 
 def _match(
@@ -264,30 +314,6 @@ def _match(
 ) -> compute.Matching:
     return compute.match_divisible(
         reference.matched, target.shape, flips=options.flips, mirrored=options.mirrored, progress=progress
-    )
-
-
-def _divide(
-    reference: PreparedReference,
-    name: str,
-    target: MatchableShape,
-    best: compute.Matching,
-    options: MatchOptions,
-    first_free: int,
-    progress: compute.Progress,
-) -> RegisteredShape:
-    """Return a target divided by the matching that was chosen."""
-    matchings = (best, *best.alternatives)
-    alternative = options.alternative % len(matchings)
-    diagrams = compute.match_shape_diagrams(reference.matched.shape.shape, target.shape.shape)
-    return RegisteredShape(
-        name=name,
-        result=target.result,
-        labels=compute.label_matched(reference.matched, target.shape, matchings[alternative], first_free, progress),
-        matching=matchings[alternative],
-        alternative=alternative,
-        n_alternatives=len(matchings) - 1,
-        by_diagrams=tuple(np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order)).tolist()),
     )
 
 

@@ -1,5 +1,7 @@
 """Registration: the same number, name and colour on the same part of every pose."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -128,6 +130,24 @@ def test_it_is_told_which_functions_were_matched(registered):
     found = [(place, sign > 0) for place, sign in zip(match.order, match.signs, strict=True)]
     assert sum(one == other for one, other in zip(told, found, strict=False)) >= 3
     assert registration_of(rest) is None
+
+
+def test_a_match_that_the_others_contradict_is_told(rest, character, monkeypatch, capfd):
+    add_pose(character, "point", seed=1)
+    bpy.data.objects["fist"].select_set(True)
+    bpy.context.view_layer.objects.active = rest
+    rest.select_set(True)
+
+    def agreed(reference, targets, matchings, match_pairs, progress):
+        return [replace(matching, confidence=0.4, is_consistent=matching is matchings[0]) for matching in matchings]
+
+    from eigenparts import compute
+
+    monkeypatch.setattr(compute, "agreed_matchings", agreed, raising=False)
+    assert bpy.ops.eigenparts.register_selected() == {"FINISHED"}
+    told = capfd.readouterr().out
+    assert told.count("contradicts those of the other shapes") == 1
+    assert registration_of(bpy.data.objects["point"]).confidence == 0.4
 
 
 def test_moving_the_level_brings_own_parts_and_names_back(registered):

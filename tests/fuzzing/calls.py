@@ -23,9 +23,25 @@ ALSO = (
 )
 # Functions that take what other functions of the engine returned, and nothing of the user's.
 INNER = {
-    *("analyzed_surface", "carried", "carried_painting", "connected_branches", "corrected_crossings", "cross_edges"),
+    *(
+        "agreed_matchings",
+        "analyzed_surface",
+        "carried",
+        "carried_painting",
+        "connected_branches",
+        "corrected_crossings",
+        "cross_edges",
+    ),
     *("divisible", "drawn_borders", "face_graph", "first_own_part", "hill_of", "joined_parts", "label_branches"),
-    *("label_matched", "majority_of_polygons", "match_divisible", "match_shape_diagrams", "mixed", "naming"),
+    *(
+        "label_matched",
+        "majority_of_polygons",
+        "match_divisible",
+        "match_members",
+        "match_shape_diagrams",
+        "mixed",
+        "naming",
+    ),
     *("needs_faces", "number_behind", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),
     *("shortened_borders", "sides", "silent", "taken_over", "tracked_parts", "undivided", "vertex_heights"),
     "with_parts",

@@ -52,6 +52,8 @@ class Matching:
         Whether the source's mirror image was matched.
     symmetric, alternating : float
         Agreement of the moment tensors, 1 at best.
+    is_consistent : bool
+        False where it contradicts the matchings of other shapes that were registered with these.
 
     Examples
     --------
@@ -71,6 +73,7 @@ class Matching:
     mirrored: bool = False
     symmetric: float = 1.0
     alternating: float = 1.0
+    is_consistent: bool = True
 
     @cached_property
     def order(self) -> Ints:

@@ -1,9 +1,10 @@
 """Registration of any number of shapes at once, through one reference."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Protocol, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -17,11 +18,20 @@ from ...surface.mesh import Ints
 from ..dense.point_map import point_map
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
 from ..eigenfunctions.pair_memory import require_pair
+from ..eigenfunctions.synchronization import pairs_in_row, synchronized
 from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
 from .transferred_labels import Divisible, FaceLabels, divisible, transfer_labels
 
 # Seconds between looks whether shapes in an executor are ready, and whether the user has cancelled.
 INTERVAL = 0.2
+MATCHED = "Matched {} of {} shapes"
+COMPARED = "Compared {} of {} pairs of shapes"
+REGISTERED = "Registered {} of {} shapes"
+CONTRADICTS = "Its matching contradicts those of the other shapes; look at its parts."
+
+Result = TypeVar("Result")
+# The numbers of two targets, the source first.
+NumberedPair: TypeAlias = tuple[int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +77,8 @@ def register(
 ) -> list[Segmentation]:
     """Divide shapes into the same parts.
 
+    Three shapes or more are matched among each other, too, so that a matching that is wrong is put right by the others.
+
     Parameters
     ----------
     analyses : sequence of Analysis
@@ -83,7 +95,7 @@ def register(
     -------
     list of Segmentation
         One for each shape: equal label = same part. A part without a partner on the reference has a label that no
-        other shape has.
+        other shape has. One whose matching contradicts those of the others says so among its warnings.
 
     Raises
     ------
@@ -114,7 +126,8 @@ def register(
     prepared = prepare_reference(analyses[reference], reference_segmentation)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
     run = _run_serially if executor is None else partial(_run_in_executor, executor)
-    segmentations = [result.segmentation for result in run(prepared, others, progress)]
+    results = _register_all(prepared, others, run, progress)
+    segmentations = [result.segmentation for result in results]
     segmentations.insert(reference, reference_segmentation)
     return with_disjoint_labels(segmentations, reference)
 
@@ -133,10 +146,8 @@ def with_parts(shape: Divisible, labels: Ints, parts: Parts, level: int) -> Refe
 
 def register_one(reference: Reference, target: Analysis, progress: Progress = silent) -> Registered:
     """Match one shape with the reference and divide it into the same parts."""
-    shape = divisible(target, matching_shape(target, section(progress, 0, 0.4)))
-    matching = match_divisible(reference, shape, progress=section(progress, 0.4, 0.8))
-    labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, section(progress, 0.8, 1))
-    return Registered(Segmentation(labels.faces, labels.parts, labels.level), matching)
+    shape, matching = _match_one(reference, target, section(progress, 0, 0.8))
+    return _divide(reference, shape, matching, section(progress, 0.8, 1))
 
 
 @told_if_full
@@ -152,6 +163,41 @@ def match_divisible(
     surfaces = reference.shape.surface, target.surface
     shapes = reference.shape.shape, target.shape
     return match_surfaces(*surfaces, *shapes, flips=flips, mirrored=mirrored, progress=progress)
+
+
+@told_if_full
+def match_members(source: Divisible, target: Divisible, progress: Progress = silent) -> Matching:
+    """Match two targets of one reference, as `match` does."""
+    return match_surfaces(source.surface, target.surface, source.shape, target.shape, progress=progress)
+
+
+def agreed_matchings(
+    reference: Reference,
+    targets: Sequence[Divisible],
+    matchings: Sequence[Matching],
+    match_pairs: Callable[[list[NumberedPair], Progress], Sequence[Matching]],
+    progress: Progress = silent,
+) -> list[Matching]:
+    """Return the matchings of a reference with its targets that agree best with those of the targets among each other.
+
+    Parameters
+    ----------
+    reference : Reference
+    targets : sequence of Divisible
+    matchings : sequence of Matching
+        Of the reference with each target by itself. A single one stays as it is, and so do those by numbers.
+    match_pairs : callable
+        ``match_pairs(pairs, progress)`` matches pairs of targets, given by their numbers, as `match_members` does.
+    progress : Progress, optional
+        May raise `Cancelled`.
+    """
+    if len(targets) < 2 or all(matching.same_topology for matching in matchings):
+        return list(matchings)
+    source = reference.shape.shape.mirrored() if matchings[0].mirrored else reference.shape.shape
+    shapes = [target.shape for target in targets]
+    pairs = pairs_in_row(source, shapes)
+    links = dict(zip(pairs, match_pairs(pairs, section(progress, 0, 0.8)), strict=True))
+    return synchronized(source, shapes, matchings, links, section(progress, 0.8, 1))
 
 
 @told_if_full
@@ -200,26 +246,68 @@ def _renumbered(segmentation: Segmentation, unshared: Ints, first_free: int) -> 
     return replace(segmentation, labels=table[segmentation.labels].astype(np.int32), parts=new_parts)
 
 
-def _run_serially(reference: Reference, targets: Sequence[Analysis], progress: Progress) -> Iterator[Registered]:
-    """Yield the registered shapes one after the other."""
-    for number, target in enumerate(targets):
-        step = section(progress, number / len(targets), (number + 1) / len(targets))
-        yield register_one(reference, target, step)
-        progress((number + 1) / len(targets), f"Registered {number + 1} of {len(targets)} shapes")
+class _Runner(Protocol):
+    """Calls a function with each of some groups of arguments, here or elsewhere."""
+
+    def __call__(
+        self, function: Callable[..., Result], arguments: Sequence[tuple[object, ...]], progress: Progress, told: str
+    ) -> list[Result]: ...
+
+
+def _register_all(
+    reference: Reference, targets: Sequence[Analysis], run: _Runner, progress: Progress
+) -> list[Registered]:
+    """Match all targets, let the matchings agree, and divide the targets by them."""
+    matched = run(_match_one, [(reference, target) for target in targets], section(progress, 0, 0.5), MATCHED)
+    shapes = [shape for shape, _ in matched]
+
+    def match_pairs(pairs: list[NumberedPair], progress: Progress) -> list[Matching]:
+        return run(match_members, [(shapes[one], shapes[other]) for one, other in pairs], progress, COMPARED)
+
+    own = [matching for _, matching in matched]
+    agreed = agreed_matchings(reference, shapes, own, match_pairs, section(progress, 0.5, 0.8))
+    arguments = [(reference, shape, matching) for shape, matching in zip(shapes, agreed, strict=True)]
+    return run(_divide, arguments, section(progress, 0.8, 1), REGISTERED)
+
+
+def _match_one(reference: Reference, target: Analysis, progress: Progress = silent) -> tuple[Divisible, Matching]:
+    shape = divisible(target, matching_shape(target, section(progress, 0, 0.5)))
+    return shape, match_divisible(reference, shape, progress=section(progress, 0.5, 1))
+
+
+def _divide(reference: Reference, shape: Divisible, matching: Matching, progress: Progress = silent) -> Registered:
+    labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, progress)
+    warnings = () if matching.is_consistent else (CONTRADICTS,)
+    return Registered(Segmentation(labels.faces, labels.parts, labels.level, warnings), matching)
+
+
+def _run_serially(
+    function: Callable[..., Result], arguments: Sequence[tuple[object, ...]], progress: Progress, told: str
+) -> list[Result]:
+    """Return the results of calls that are made one after the other."""
+    results: list[Result] = []
+    for number, given in enumerate(arguments, 1):
+        results.append(function(*given, section(progress, (number - 1) / len(arguments), number / len(arguments))))
+        progress(number / len(arguments), told.format(number, len(arguments)))
+    return results
 
 
 def _run_in_executor(
-    executor: Executor, reference: Reference, targets: Sequence[Analysis], progress: Progress
-) -> Iterator[Registered]:
-    """Yield the registered shapes in their order; those that have not begun are given up where this is cancelled."""
-    futures = [executor.submit(register_one, reference, target) for target in targets]
+    executor: Executor,
+    function: Callable[..., Result],
+    arguments: Sequence[tuple[object, ...]],
+    progress: Progress,
+    told: str,
+) -> list[Result]:
+    """Return the results in the order of the calls; those that have not begun are given up where this is cancelled."""
+    futures = [executor.submit(function, *given) for given in arguments]
     try:
-        open_futures: set[Future[Registered]] = set(futures)
+        open_futures: set[Future[Result]] = set(futures)
         while open_futures:
             _, open_futures = wait(open_futures, timeout=INTERVAL)
             n_done = len(futures) - len(open_futures)
-            progress(n_done / len(futures), f"Registered {n_done} of {len(futures)} shapes")
-        yield from (future.result() for future in futures)
+            progress(n_done / len(futures), told.format(n_done, len(futures)))
+        return [future.result() for future in futures]
     finally:
         for future in futures:
             future.cancel()

@@ -1,6 +1,7 @@
 """Equal label, same part: on other triangulations, with parts too many or too few, in any executor."""
 
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 
 import numpy as np
@@ -9,9 +10,11 @@ from scipy.spatial import cKDTree
 
 from compute.analysis.analysis import Analysis
 from compute.analysis.analyze import analyze
-from compute.errors import RegistrationError
+from compute.errors import Cancelled, RegistrationError
+from compute.registration.eigenfunctions.matching import match_surfaces
+from compute.registration.parts import population
 from compute.registration.parts.part_matching import with_first_free
-from compute.registration.parts.population import register
+from compute.registration.parts.population import CONTRADICTS, register
 from compute.surface.mesh import TriangleMesh
 from tests.compute.registration.shapes import LUMPS, lumpy_ball, moved, shuffled
 
@@ -117,6 +120,55 @@ def test_progress_is_told_after_each_pair(ball, finer):
     told = []
     register([ball, finer, finer], progress=lambda fraction, text: told.append((fraction, text)))
     assert told[-1] == (1.0, "Registered 2 of 2 shapes")
+
+
+def test_two_shapes_are_matched_once(ball, finer, monkeypatch):
+    calls = []
+
+    def counted(*shapes, **options):
+        calls.append(shapes)
+        return match_surfaces(*shapes, **options)
+
+    monkeypatch.setattr(population, "match_surfaces", counted)
+    register([ball, finer])
+    assert len(calls) == 1
+    register([ball, finer, finer])
+    assert len(calls) == 4
+
+
+def test_a_matching_that_is_sure_and_wrong_is_put_right_by_the_others(ball, finer, monkeypatch):
+    _, right = register([ball, finer])
+    other = analyze(shuffled(moved(ball.mesh), seed=5)[0])
+
+    def wrong_for_finer(source, target, *shapes, **options):
+        found = match_surfaces(source, target, *shapes, **options)
+        is_wrong = source is ball.surface and target is finer.surface
+        return replace(found.alternatives[0], confidence=0.95) if is_wrong else found
+
+    monkeypatch.setattr(population, "match_surfaces", wrong_for_finer)
+    _, alone = register([ball, finer])
+    assert agreement(finer, alone.labels, finer, right.labels) < 0.9
+    _, result, _ = register([ball, finer, other])
+    assert agreement(finer, result.labels, finer, right.labels) > 0.97
+    assert result.warnings == ()
+
+
+def test_a_matching_that_contradicts_the_others_is_told(ball, finer, monkeypatch):
+    def agreed(reference, targets, matchings, match_pairs, progress):
+        return [matchings[0], replace(matchings[1], is_consistent=False)]
+
+    monkeypatch.setattr(population, "agreed_matchings", agreed)
+    assert [one.warnings for one in register([ball, finer, finer])] == [(), (), (CONTRADICTS,)]
+
+
+@pytest.mark.parametrize("text", ["Matched 1 of 2", "Compared 1 of 1", "Comparing with", "Registered 1 of 2"])
+def test_every_stage_can_be_cancelled(ball, finer, text):
+    def cancel(fraction, told):
+        if told.startswith(text):
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        register([ball, finer, finer], progress=cancel)
 
 
 def test_parts_without_a_partner_are_numbered_from_a_free_label():

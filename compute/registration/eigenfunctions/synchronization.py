@@ -1,0 +1,237 @@
+"""Synchronization: maps from one shape to many, chosen so that the maps among the many that follow from them fit, too.
+
+A pair whose shapes look alike from front and back may be matched turned, and nothing of the pair tells. Others do: the
+map from A over B to C is as good as one from A to C that was searched for, if all three are right. So the targets are
+matched in a row, each with the next, and every triangle of reference, target and next target is a cycle: what follows
+from two of its maps is proposed for the third and scored like what a search finds. Of all that is proposed, those maps
+are taken that cost least over all pairs together.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from ...progress import Progress, section, silent
+from ...surface.mesh import Floats
+from ...surface.ties import first_least
+from .hypotheses import Hypotheses
+from .map_scoring import (
+    COMPARED_FUNCTIONS,
+    LEAST_COST,
+    SAME_MAP,
+    Candidate,
+    MapScorer,
+    confidence_of,
+    distinct_candidates,
+    fit_of,
+    ranked,
+)
+from .matching import FLIPPABLE, MAX_ALTERNATIVES, Matching
+from .spectral_shape import SpectralShape
+from .zoomout import MATCHING_SIZES
+
+# Different maps of a pair that are weighed against those of other pairs, and how many times more than its best one they
+# may cost: on 56 pairs of scanned persons neither four maps nor a hundred times changed anything.
+MOST_RIVALS = 3
+SPREAD = 30.0
+# A proposal that is this near to a known map leads to it: refinement moved none farther on those pairs.
+SAME_START = 0.1
+# A pair that is surer than this of a map does not agree with another one.
+SURE_OF_ANOTHER = 0.5
+COMPARING = "Comparing with the other shapes"
+
+
+def pairs_in_row(reference: SpectralShape, targets: Sequence[SpectralShape]) -> list[tuple[int, int]]:
+    """Return the numbers of targets to be matched with each other: each with the next in a row of the most alike.
+
+    The row begins with the target whose eigenvalues are nearest to the reference's, whatever the order of the targets.
+    """
+    n_compared = 1 + min(FLIPPABLE, *(shape.n_functions - 1 for shape in (reference, *targets)))
+    spectra = np.log([shape.values[1:n_compared] for shape in (reference, *targets)])
+    row, left = [0], list(range(1, len(spectra)))
+    while left:
+        gaps = np.linalg.norm(spectra[left] - spectra[row[-1]], axis=1)
+        row.append(left.pop(int(first_least(gaps))))
+    return list(pairwise(number - 1 for number in row[1:]))
+
+
+def synchronized(
+    reference: SpectralShape,
+    targets: Sequence[SpectralShape],
+    matchings: Sequence[Matching],
+    links: dict[tuple[int, int], Matching],
+    progress: Progress = silent,
+) -> list[Matching]:
+    """Return the matchings of a reference with its targets that agree best with each other.
+
+    Parameters
+    ----------
+    reference : SpectralShape
+        Its mirror image if that was matched.
+    targets : sequence of SpectralShape
+        At least two.
+    matchings : sequence of Matching
+        Of the reference (source) with each target by itself. Those by numbers stay as they are.
+    links : dict of (int, int) to Matching
+        Of the targets of `pairs_in_row`, in that order.
+    progress : Progress, optional
+        May raise `Cancelled`.
+
+    References
+    ----------
+    .. [1] Nguyen et al., "An Optimization Approach to Improving Collections of Shape Maps", SGP 2011.
+    .. [2] Huang and Guibas, "Consistent Shape Maps via Semidefinite Programming", SGP 2013.
+    """
+    row = [next(iter(links))[0], *(second for _, second in links)]
+    spokes = [_Pair(reference, targets[number], matchings[number]) for number in row]
+    between = [_Pair(targets[first], targets[second], link) for (first, second), link in links.items()]
+    _propose(spokes, between, section(progress, 0, 0.5))
+    agreed = _agreed(spokes, between, section(progress, 0.5, 1))
+    return [agreed[row.index(number)] for number in range(len(targets))]
+
+
+class _Pair:
+    """Two matched shapes with the maps between them that were found or proposed, each refined and scored."""
+
+    def __init__(self, source: SpectralShape, target: SpectralShape, matching: Matching) -> None:
+        n_available = min(source.n_functions, target.n_functions)
+        self._scorer = MapScorer(source, target, [min(size, n_available) for size in MATCHING_SIZES])
+        self._size = min(FLIPPABLE, n_available - 1)
+        self.matching = matching
+        self.candidates: list[Candidate] = []
+        for found in (matching, *matching.alternatives):
+            self.candidate_of(found.map)
+
+    def candidate_of(self, functional_map: Floats) -> Candidate:
+        """Return what a map, without the constant, is refined to."""
+        start = functional_map[: self._size, : self._size]
+        for candidate in self.candidates:
+            if _difference(_map_of(candidate), start) <= SAME_START:
+                return candidate
+        (candidate,) = self._scorer.score(Hypotheses(start[None], np.zeros(1), np.zeros(1)))
+        self.candidates.append(candidate)
+        return candidate
+
+    def rivals(self) -> list[Candidate]:
+        """Return the different maps that may be right, the least costly first."""
+        if self.matching.same_topology:
+            return self.candidates[:1]
+        best, *others = distinct_candidates(ranked(self.candidates), MOST_RIVALS)
+        dearest = SPREAD * (best.cost + LEAST_COST)
+        return [best, *(other for other in others if other.cost <= dearest and not other.is_torn)]
+
+    def is_sure_of_another(self, functional_map: Floats) -> bool:
+        """Whether the best map is sure by itself, and another than this one."""
+        best = self.rivals()[0]
+        is_sure = self.matching.same_topology or confidence_of(best, self.candidates) > SURE_OF_ANOTHER
+        return is_sure and _difference(_map_of(best), functional_map) > SAME_MAP
+
+
+def _map_of(candidate: Candidate) -> Floats:
+    return candidate.functional_map[1:, 1:]
+
+
+def _difference(one: Floats, other: Floats) -> float:
+    """Return how far maps of the first functions are from each other, relative to the identity's norm."""
+    n = min(COMPARED_FUNCTIONS, len(one), len(other))
+    return float(np.linalg.norm(one[:n, :n] - other[:n, :n]) / np.sqrt(n))
+
+
+def _propose(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> None:
+    """Give every spoke what follows from its neighbours in the row, forth and back, so that it gets all along."""
+    forth = [(place, place + 1) for place in range(len(links))]
+    back = [(after, before) for before, after in reversed(forth)]
+    for number, (known, place) in enumerate(forth + back):
+        progress(number / (2 * len(links)), COMPARING)
+        for link in links[min(known, place)].rivals():
+            step = _map_of(link) if known < place else _map_of(link).T
+            for candidate in spokes[known].rivals():
+                spokes[place].candidate_of(step @ _map_of(candidate))
+
+
+def _agreed(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> list[Matching]:
+    """Return the matchings of the spokes that cost least together with what follows from them for the links."""
+    rivals = [spoke.rivals() for spoke in spokes]
+    of_links = []
+    for place, link in enumerate(links):
+        progress(place / len(links), COMPARING)
+        of_links.append(_costs_of_link(link, *rivals[place : place + 2]))
+    of_spokes = [np.array([_log_cost(candidate) for candidate in candidates]) for candidates in rivals]
+    chosen, margins = cheapest_in_row(of_spokes, of_links)
+    maps = [_map_of(candidates[number]) for candidates, number in zip(rivals, chosen, strict=True)]
+    is_broken = [
+        link.is_sure_of_another(after @ before.T) for link, (before, after) in zip(links, pairwise(maps), strict=True)
+    ]
+    return [
+        _with_choice(spoke, rivals[place][chosen[place]], margins[place], is_broken[max(place - 1, 0) : place + 1])
+        for place, spoke in enumerate(spokes)
+    ]
+
+
+def _costs_of_link(link: _Pair, before: list[Candidate], after: list[Candidate]) -> Floats:
+    """Return (b, a) the costs of the link's maps that follow from each map to its source and each to its target."""
+    composed = [[link.candidate_of(_map_of(second) @ _map_of(first).T) for second in after] for first in before]
+    return np.array([[_log_cost(candidate) for candidate in row] for row in composed])
+
+
+def _log_cost(candidate: Candidate) -> float:
+    return float(np.log(candidate.cost + LEAST_COST) + candidate.is_torn * np.log(SPREAD))
+
+
+def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[list[int], list[float]]:
+    """Return a choice for each place of a row that costs least in all, and how much more it takes to choose otherwise.
+
+    Parameters
+    ----------
+    of_places : list of (c,) float64
+        Cost of each choice at each place.
+    of_links : list of (c, c') float64
+        Cost of the choices at two neighbouring places together.
+
+    Returns
+    -------
+    chosen : list of int
+    margins : list of float
+        What the cheapest row with another choice at a place costs more; infinite where there is no other.
+    """
+    before, after = [of_places[0]], [of_places[-1]]
+    for place, link in enumerate(of_links):
+        before.append(of_places[place + 1] + (before[-1][:, None] + link).min(axis=0))
+    for place, link in reversed(list(enumerate(of_links))):
+        after.insert(0, of_places[place] + (link + after[0]).min(axis=1))
+    chosen = [int(first_least(after[0]))]
+    for link, rest in zip(of_links, after[1:], strict=True):
+        chosen.append(int(first_least(link[chosen[-1]] + rest)))
+    totals = [one + other - own for one, other, own in zip(before, after, of_places, strict=True)]
+    others = [np.delete(total, choice) for total, choice in zip(totals, chosen, strict=True)]
+    margins = [
+        float(other.min(initial=np.inf) - total[choice])
+        for other, total, choice in zip(others, totals, chosen, strict=True)
+    ]
+    return chosen, margins
+
+
+def _with_choice(spoke: _Pair, best: Candidate, margin: float, is_broken: list[bool]) -> Matching:
+    """Return the matching of a spoke by one of its candidates; in doubt where more of its cycles break than hold."""
+    if spoke.matching.same_topology:
+        return spoke.matching
+    is_consistent = 2 * sum(is_broken) <= len(is_broken)
+    confidence = fit_of(best) * max(1 - float(np.exp(-margin)), 0.0) / (1 if is_consistent else 2)
+    candidates = distinct_candidates(ranked(spoke.candidates), 1 + MAX_ALTERNATIVES)
+    others = [candidate for candidate in candidates if candidate is not best][:MAX_ALTERNATIVES]
+    alternatives = tuple(_by_candidate(spoke.matching, one, (1 - confidence) * fit_of(one)) for one in others)
+    matching = _by_candidate(spoke.matching, best, confidence)
+    return replace(matching, alternatives=alternatives, is_consistent=is_consistent)
+
+
+def _by_candidate(matching: Matching, candidate: Candidate, confidence: float) -> Matching:
+    return replace(
+        matching,
+        map=_map_of(candidate),
+        confidence=confidence,
+        alternatives=(),
+        symmetric=candidate.symmetric,
+        alternating=candidate.alternating,
+    )
