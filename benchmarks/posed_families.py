@@ -104,7 +104,7 @@ def noised(mesh: TriangleMesh) -> TriangleMesh:
 
 
 def cut_open(mesh: TriangleMesh) -> TriangleMesh:
-    """Return the remeshed surface without the 3 % of its triangles around a random one, and without what that cuts off."""
+    """Return the remeshed surface without 3 % of its triangles around a random one, in one piece."""
     even = remeshed(mesh)
     centre = even.vertices[even.triangles].mean(axis=1)
     away = np.linalg.norm(centre - centre[np.random.default_rng(2).integers(len(centre))], axis=1)

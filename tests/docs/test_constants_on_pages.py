@@ -7,6 +7,7 @@ import pytest
 from compute.fem import assembly, eigensolver, order_choice
 from compute.fields import scalar_field, shell_fields
 from compute.registration.dense import by_shape, confidence, deformation_graph, nonrigid_alignment, point_map, transfer
+from compute.registration.eigenfunctions import confidence as map_confidence
 from compute.registration.eigenfunctions import hypotheses, map_scoring, spectral_shape, zoomout
 from compute.registration.parts import part_matching
 from compute.segmentation.hierarchy import arc_measures, levels, nesting
@@ -34,8 +35,9 @@ METHOD = {
     "samples": f"at {spectral_shape.N_SAMPLES} points",
     "sizes of the map": f"from {zoomout.MATCHING_SIZES[0]} to {zoomout.MATCHING_SIZES[-1]}",
     "tearing": f"({map_scoring.USUAL_TEARING:g} + τ)",
-    "doubtful cost": f"(cost / {power(map_scoring.DOUBTFUL_COST)})²",
-    "least cost": f"(cost + {power(map_scoring.LEAST_COST)})",
+    "evidence": f"{map_confidence.CURVATURE_WEIGHT:g} ρ - {map_confidence.COST_WEIGHT:g} ln(cost",
+    "doubtful cost": f"(1 + cost / {power(map_confidence.DOUBTFUL_COST)})",
+    "least cost": f"(cost + {power(map_confidence.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
     "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",
     "nodes": f"up to {by_shape.N_NODES} nodes",

@@ -7,8 +7,8 @@ import numpy as np
 from ...surface.mesh import Floats
 from .map_scoring import Candidate
 
-# What speaks for one map against another: for each factor e that it costs less, and for fine curvature that agrees
-# better. Fitted, like the cost below, to pairs whose truth is known (docs/registration.md, "Confidence").
+# Log odds of one map against another: for each factor e that it costs less, and for fine curvature that agrees better.
+# Fitted, like the cost below, to pairs whose truth is known (docs/registration.md, "Confidence").
 COST_WEIGHT, CURVATURE_WEIGHT = 2.5, 20.0
 # Cost at which it is as likely that no map is right as that the best is.
 DOUBTFUL_COST = 1e-5
@@ -16,21 +16,36 @@ DOUBTFUL_COST = 1e-5
 LEAST_COST = 2e-9
 
 
-def probabilities(candidates: Sequence[Candidate], curvature: Sequence[float]) -> Floats:
+def evidence_of(candidate: Candidate, curvature: float) -> float:
+    """Return the log odds of a map, up to a number that is the same for all maps of a pair of shapes.
+
+    Parameters
+    ----------
+    candidate : Candidate
+    curvature : float
+        Agreement of the fine curvature under it, from -1 to 1.
+    """
+    return CURVATURE_WEIGHT * curvature - COST_WEIGHT * float(np.log(candidate.cost + LEAST_COST))
+
+
+def fit_of(candidate: Candidate) -> float:
+    """Return how likely it is, from 0 to 1, that a map or one of its rivals is right."""
+    return 0.0 if candidate.is_torn else 1 / (1 + candidate.cost / DOUBTFUL_COST)
+
+
+def probabilities(candidates: Sequence[Candidate], evidence: Sequence[float]) -> Floats:
     """Return (n,) how likely each of some different maps is the right one; what is left of 1 is for none of them.
 
     Parameters
     ----------
     candidates : sequence of Candidate
         At least one, and no two of them the same map.
-    curvature : sequence of float
-        Agreement of the fine curvature under each, from -1 to 1.
+    evidence : sequence of float
+        Log odds of each.
     """
-    cost = np.array([candidate.cost for candidate in candidates])
-    evidence = CURVATURE_WEIGHT * np.asarray(curvature) - COST_WEIGHT * np.log(cost + LEAST_COST)
     is_whole = np.array([not candidate.is_torn for candidate in candidates])
     if not is_whole.any():
         return np.zeros(len(candidates))
-    odds = np.where(is_whole, np.exp(np.minimum(evidence - evidence[is_whole].max(), 0.0)), 0.0)
-    fit = 1 / (1 + cost[odds.argmax()] / DOUBTFUL_COST)
-    return fit * odds / odds.sum()
+    lead = np.asarray(evidence) - np.asarray(evidence)[is_whole].max()
+    odds = np.where(is_whole, np.exp(np.minimum(lead, 0.0)), 0.0)
+    return fit_of(candidates[int(odds.argmax())]) * odds / odds.sum()

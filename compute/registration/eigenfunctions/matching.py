@@ -13,7 +13,7 @@ from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from ...surface.ties import evened
-from .confidence import probabilities
+from .confidence import evidence_of, probabilities
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, distinct_candidates, ranked
 from .pair_memory import require_pair
@@ -239,7 +239,8 @@ def _weighed_with_signs(
 
 def _weighed(candidates: Sequence[Candidate], scorer: MapScorer) -> list[tuple[Candidate, float]]:
     """Return candidates with their probabilities, the likeliest first."""
-    likely = probabilities(candidates, [scorer.fine_curvature(candidate) for candidate in candidates])
+    evidence = [evidence_of(candidate, scorer.fine_curvature(candidate)) for candidate in candidates]
+    likely = probabilities(candidates, evidence)
     order = np.argsort(-evened(likely), kind="stable")
     return [(candidates[number], float(likely[number])) for number in order.tolist()]
 

@@ -16,21 +16,11 @@ import numpy as np
 from ...progress import Progress, section, silent
 from ...surface.mesh import Floats
 from ...surface.ties import first_least
-from .hypotheses import Hypotheses
-from .map_scoring import (
-    COMPARED_FUNCTIONS,
-    LEAST_COST,
-    SAME_MAP,
-    Candidate,
-    MapScorer,
-    confidence_of,
-    distinct_candidates,
-    fit_of,
-    ranked,
-)
+from .confidence import COST_WEIGHT, LEAST_COST, evidence_of, fit_of, probabilities
+from .map_scoring import SAME_MAP, Candidate, MapScorer, distance_of, distinct_candidates, ranked
 from .matching import FLIPPABLE, MAX_ALTERNATIVES, Matching
 from .spectral_shape import SpectralShape
-from .zoomout import MATCHING_SIZES
+from .zoomout import with_constant
 
 # Different maps of a pair that are weighed against those of other pairs, and how many times more than its best one they
 # may cost: on 56 pairs of scanned persons neither four maps nor a hundred times changed anything.
@@ -96,9 +86,9 @@ class _Pair:
     """Two matched shapes with the maps between them that were found or proposed, each refined and scored."""
 
     def __init__(self, source: SpectralShape, target: SpectralShape, matching: Matching) -> None:
-        n_available = min(source.n_functions, target.n_functions)
-        self._scorer = MapScorer(source, target, [min(size, n_available) for size in MATCHING_SIZES])
-        self._size = min(FLIPPABLE, n_available - 1)
+        self._scorer = MapScorer(source, target)
+        self._size = min(FLIPPABLE, source.n_functions - 1, target.n_functions - 1)
+        self._evidence: dict[Candidate, float] = {}
         self.matching = matching
         self.candidates: list[Candidate] = []
         for found in (matching, *matching.alternatives):
@@ -108,11 +98,22 @@ class _Pair:
         """Return what a map, without the constant, is refined to."""
         start = functional_map[: self._size, : self._size]
         for candidate in self.candidates:
-            if _difference(_map_of(candidate), start) <= SAME_START:
+            if distance_of(candidate.functional_map, with_constant(start)) <= SAME_START:
                 return candidate
-        (candidate,) = self._scorer.score(Hypotheses(start[None], np.zeros(1), np.zeros(1)))
+        (candidate,) = self._scorer.score(start[None])
         self.candidates.append(candidate)
         return candidate
+
+    def evidence_of(self, candidate: Candidate) -> float:
+        """Return the log odds of a candidate; one that is torn has to be borne by all others."""
+        if candidate not in self._evidence:
+            evidence = evidence_of(candidate, self._scorer.fine_curvature(candidate))
+            self._evidence[candidate] = evidence - COST_WEIGHT * float(np.log(SPREAD)) * candidate.is_torn
+        return self._evidence[candidate]
+
+    def likely(self, candidates: Sequence[Candidate]) -> Floats:
+        """Return the probabilities of different candidates of this pair alone."""
+        return probabilities(candidates, [self.evidence_of(candidate) for candidate in candidates])
 
     def rivals(self) -> list[Candidate]:
         """Return the different maps that may be right, the least costly first."""
@@ -124,19 +125,15 @@ class _Pair:
 
     def is_sure_of_another(self, functional_map: Floats) -> bool:
         """Whether the best map is sure by itself, and another than this one."""
-        best = self.rivals()[0]
-        is_sure = self.matching.same_topology or confidence_of(best, self.candidates) > SURE_OF_ANOTHER
-        return is_sure and _difference(_map_of(best), functional_map) > SAME_MAP
+        rivals = self.rivals()
+        likely = self.likely(rivals)
+        best = int(likely.argmax())
+        is_sure = self.matching.same_topology or likely[best] > SURE_OF_ANOTHER
+        return bool(is_sure) and distance_of(rivals[best].functional_map, with_constant(functional_map)) > SAME_MAP
 
 
 def _map_of(candidate: Candidate) -> Floats:
     return candidate.functional_map[1:, 1:]
-
-
-def _difference(one: Floats, other: Floats) -> float:
-    """Return how far maps of the first functions are from each other, relative to the identity's norm."""
-    n = min(COMPARED_FUNCTIONS, len(one), len(other))
-    return float(np.linalg.norm(one[:n, :n] - other[:n, :n]) / np.sqrt(n))
 
 
 def _propose(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> None:
@@ -158,7 +155,10 @@ def _agreed(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> list
     for place, link in enumerate(links):
         progress(place / len(links), COMPARING)
         of_links.append(_costs_of_link(link, *rivals[place : place + 2]))
-    of_spokes = [np.array([_log_cost(candidate) for candidate in candidates]) for candidates in rivals]
+    of_spokes = [
+        np.array([-spoke.evidence_of(candidate) for candidate in candidates])
+        for spoke, candidates in zip(spokes, rivals, strict=True)
+    ]
     chosen, margins = cheapest_in_row(of_spokes, of_links)
     maps = [_map_of(candidates[number]) for candidates, number in zip(rivals, chosen, strict=True)]
     is_broken = [
@@ -173,11 +173,7 @@ def _agreed(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> list
 def _costs_of_link(link: _Pair, before: list[Candidate], after: list[Candidate]) -> Floats:
     """Return (b, a) the costs of the link's maps that follow from each map to its source and each to its target."""
     composed = [[link.candidate_of(_map_of(second) @ _map_of(first).T) for second in after] for first in before]
-    return np.array([[_log_cost(candidate) for candidate in row] for row in composed])
-
-
-def _log_cost(candidate: Candidate) -> float:
-    return float(np.log(candidate.cost + LEAST_COST) + candidate.is_torn * np.log(SPREAD))
+    return np.array([[-link.evidence_of(candidate) for candidate in row] for row in composed])
 
 
 def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[list[int], list[float]]:
@@ -218,10 +214,11 @@ def _with_choice(spoke: _Pair, best: Candidate, margin: float, is_broken: list[b
     if spoke.matching.same_topology:
         return spoke.matching
     is_consistent = 2 * sum(is_broken) <= len(is_broken)
-    confidence = fit_of(best) * max(1 - float(np.exp(-margin)), 0.0) / (1 if is_consistent else 2)
-    candidates = distinct_candidates(ranked(spoke.candidates), 1 + MAX_ALTERNATIVES)
-    others = [candidate for candidate in candidates if candidate is not best][:MAX_ALTERNATIVES]
-    alternatives = tuple(_by_candidate(spoke.matching, one, (1 - confidence) * fit_of(one)) for one in others)
+    confidence = fit_of(best) / (1 + float(np.exp(-margin))) / (1 if is_consistent else 2)
+    others = distinct_candidates([best, *ranked(spoke.candidates)], 1 + MAX_ALTERNATIVES)[1:]
+    shares = (1 - confidence) * (spoke.likely(others) if others else np.empty(0))
+    likeliest = sorted(zip(shares, others, strict=True), key=lambda share: -share[0])
+    alternatives = tuple(_by_candidate(spoke.matching, one, float(share)) for share, one in likeliest)
     matching = _by_candidate(spoke.matching, best, confidence)
     return replace(matching, alternatives=alternatives, is_consistent=is_consistent)
 

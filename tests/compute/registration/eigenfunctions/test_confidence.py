@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compute.registration.eigenfunctions.confidence import DOUBTFUL_COST, probabilities
+from compute.registration.eigenfunctions.confidence import DOUBTFUL_COST, evidence_of, probabilities
 from compute.registration.eigenfunctions.map_scoring import Candidate
 
 # Scores under which the cost is the commutation.
@@ -26,31 +26,35 @@ def costing(cost: float) -> Candidate:
     return replace(GOOD, commutation=cost)
 
 
+def chances(candidates, curvature):
+    return probabilities(candidates, [evidence_of(*pair) for pair in zip(candidates, curvature, strict=True)])
+
+
 def test_a_cheap_map_without_rivals_is_nearly_sure():
-    assert probabilities([costing(1e-9)], [0.8])[0] > 0.99
+    assert chances([costing(1e-9)], [0.8])[0] > 0.99
 
 
 def test_at_the_doubtful_cost_it_is_as_likely_that_no_map_is_right():
-    assert probabilities([costing(DOUBTFUL_COST)], [0.8]) == pytest.approx([0.5])
+    assert chances([costing(DOUBTFUL_COST)], [0.8]) == pytest.approx([0.5])
 
 
 def test_rivals_as_good_share_what_there_is():
-    assert probabilities([costing(1e-8)] * 5, [0.8] * 5) == pytest.approx([0.2] * 5, rel=0.01)
+    assert chances([costing(1e-8)] * 5, [0.8] * 5) == pytest.approx([0.2] * 5, rel=0.01)
 
 
 def test_costs_below_what_a_shape_fits_itself_by_say_nothing():
-    assert probabilities([costing(1e-30), costing(1e-12)], [0.8, 0.8]) == pytest.approx([0.5, 0.5], rel=0.01)
+    assert chances([costing(1e-30), costing(1e-12)], [0.8, 0.8]) == pytest.approx([0.5, 0.5], rel=0.01)
 
 
 def test_of_equal_costs_the_finer_curvature_is_likelier():
-    right, turned = probabilities([costing(1e-7), costing(1e-7)], [0.85, 0.7])
+    right, turned = chances([costing(1e-7), costing(1e-7)], [0.85, 0.7])
     assert right > 0.9
     assert right + turned < 1
 
 
 def test_a_torn_map_has_no_chance_whatever_it_costs():
     torn = replace(GOOD, commutation=1e-12, orientation=-1.0)
-    chances = probabilities([torn, costing(1e-6)], [0.9, 0.5])
-    assert chances[0] == 0
-    assert chances[1] > 0.5
-    assert probabilities([torn], [0.9]) == pytest.approx([0])
+    found = chances([torn, costing(1e-6)], [0.9, 0.5])
+    assert found[0] == 0
+    assert found[1] > 0.5
+    assert chances([torn], [0.9]) == pytest.approx([0])
