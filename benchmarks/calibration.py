@@ -69,7 +69,8 @@ def families_table(outcomes: Sequence[Outcome]) -> Iterator[str]:
         sure = [one for one in own if one.confidence > 0.5]
         n_wrong = sum(not one.is_right for one in sure)
         seconds = np.mean([one.seconds for one in own])
-        yield f"| {family} | {len(own)} | {sum(one.is_right for one in own)} | {len(sure)} | {n_wrong} | {seconds:.2f} |"
+        n_right = sum(one.is_right for one in own)
+        yield f"| {family} | {len(own)} | {n_right} | {len(sure)} | {n_wrong} | {seconds:.2f} |"
 
 
 def run_scans(data: Path, ledger: Ledger) -> None:
