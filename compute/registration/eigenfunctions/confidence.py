@@ -14,6 +14,8 @@ COST_WEIGHT, CURVATURE_WEIGHT = 2.5, 20.0
 DOUBTFUL_COST = 1e-5
 # Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
 LEAST_COST = 2e-9
+# Curvature that agrees better than this says nothing: so it does over the right map between other triangulations.
+FULL_AGREEMENT = 0.9
 
 
 def evidence_of(candidate: Candidate, curvature: float) -> float:
@@ -25,7 +27,8 @@ def evidence_of(candidate: Candidate, curvature: float) -> float:
     curvature : float
         Agreement of the fine curvature under it, from -1 to 1.
     """
-    return CURVATURE_WEIGHT * curvature - COST_WEIGHT * float(np.log(candidate.cost + LEAST_COST))
+    agreement = min(curvature, FULL_AGREEMENT)
+    return CURVATURE_WEIGHT * agreement - COST_WEIGHT * float(np.log(candidate.cost + LEAST_COST))
 
 
 def fit_of(candidate: Candidate) -> float:
