@@ -23,6 +23,8 @@ TORN = 3.0
 # What no map does without: at 1000 samples single points near thin features always are.
 USUAL_TEARING = 0.003
 NEIGHBOURS = 6
+# Standard deviation of fine curvature, which ranges from -1 to 1, that is the triangulation's: a sphere has no more.
+CURVATURE_NOISE = 0.02
 # Below this share of triangles that keep their orientation a map is torn or inside out.
 LEAST_ORIENTED = 0.3
 
@@ -145,7 +147,8 @@ class MapScorer:
         """Return the correlation of fine curvature over the map of a candidate, from -1 to 1."""
         source, samples = self._source, self._target.samples
         nearest = nearest_points(candidate.functional_map, source.functions, self._target.functions[samples])
-        return _correlation(source.fine_curvature[nearest], self._target.fine_curvature[samples])
+        curvature = source.fine_curvature[nearest], self._target.fine_curvature[samples]
+        return _correlation(*curvature, noise=CURVATURE_NOISE)
 
     def _candidate(self, start: Floats, signs: Mapping[int, int]) -> Candidate:
         source, target = self._source_samples, self._target_samples
@@ -207,6 +210,8 @@ def _neighbours(shape: SpectralShape) -> tuple[Ints, Floats]:
     return pairs, np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
 
 
-def _correlation(one: Floats, other: Floats) -> float:
+def _correlation(one: Floats, other: Floats, noise: float = 0.0) -> float:
+    """Return the correlation, from -1 to 1, with noise of a given size added to both: less where they hardly vary."""
     one, other = one - one.mean(), other - other.mean()
-    return float(one @ other / max(np.linalg.norm(one) * np.linalg.norm(other), np.finfo(float).tiny))
+    floor = noise**2 * len(one) + np.finfo(float).tiny
+    return float(one @ other / np.sqrt((one @ one + floor) * (other @ other + floor)))
