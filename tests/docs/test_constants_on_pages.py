@@ -35,7 +35,8 @@ METHOD = {
     "samples": f"at {spectral_shape.N_SAMPLES} points",
     "sizes of the map": f"from {zoomout.MATCHING_SIZES[0]} to {zoomout.MATCHING_SIZES[-1]}",
     "tearing": f"({map_scoring.USUAL_TEARING:g} + τ)",
-    "evidence": f"{map_confidence.CURVATURE_WEIGHT:g} min(ρ, {map_confidence.FULL_AGREEMENT:g}) - {map_confidence.COST_WEIGHT:g} ln(cost",
+    "evidence": f"{map_confidence.CURVATURE_WEIGHT:g} min(ρ, {map_confidence.FULL_AGREEMENT:g})"
+    f" - {map_confidence.COST_WEIGHT:g} ln(cost",
     "doubtful cost": f"(1 + cost / {power(map_confidence.DOUBTFUL_COST)})",
     "least cost": f"(cost + {power(map_confidence.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
