@@ -24,7 +24,7 @@ TORN = 3.0
 USUAL_TEARING = 0.003
 NEIGHBOURS = 6
 # Standard deviation of fine curvature, which ranges from -1 to 1, that is the triangulation's: a sphere has as much.
-CURVATURE_NOISE = 0.1
+CURVATURE_NOISE = 0.15
 # Below this share of triangles that keep their orientation a map is torn or inside out.
 LEAST_ORIENTED = 0.3
 
