@@ -55,6 +55,8 @@ class Candidate:
         are blind.
     tearing : float
         Share of neighbouring points that are torn apart, from 0 to 1; swapped arms on the right body show here.
+    handicap : float
+        Factor, at least 1, of the cost of a map that misses given points.
     """
 
     start: Floats
@@ -66,13 +68,14 @@ class Candidate:
     orientation: float
     curvature: float
     tearing: float
+    handicap: float = 1.0
 
     @cached_property
     def cost(self) -> float:
         """Small for good maps; the factors are what separates right from wrong on posed characters."""
         moments = (1.02 - self.symmetric) * (1.02 - self.alternating)
         geometry = (2 - self.orientation) * (1.05 - self.curvature) * (USUAL_TEARING + self.tearing)
-        return self.commutation * moments * geometry
+        return self.commutation * moments * geometry * self.handicap + LEAST_COST * (self.handicap - 1)
 
     @property
     def is_torn(self) -> bool:

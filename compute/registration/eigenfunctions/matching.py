@@ -1,10 +1,11 @@
 """Matching: order, sign, mixing and handedness of the eigenfunctions of two shapes, with nothing to click."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
@@ -12,11 +13,12 @@ from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
+from .given_points import PointFit, checked_points, point_pairs, sentences_about, trust_in
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
 from .pair_memory import require_pair
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
-from .zoomout import MATCHING_SIZES, rounded
+from .zoomout import MATCHING_SIZES, rounded, with_constant
 
 # Widths of the search; the next effort is made only where the ones before leave doubt.
 EFFORTS = (
@@ -50,6 +52,11 @@ class Matching:
         Whether the source's mirror image was matched.
     symmetric, alternating : float
         Agreement of the moment tensors, 1 at best.
+    points : (p, 2) int64
+        Pairs of vertices, of the source and the target, that were given.
+    point_gaps : (p,) float64
+        Length, in units of the root of the area, from the source's vertex of each pair to where the map of the
+        functions puts the target's. Dense maps put it where it was given.
 
     Examples
     --------
@@ -69,6 +76,13 @@ class Matching:
     mirrored: bool = False
     symmetric: float = 1.0
     alternating: float = 1.0
+    points: Ints = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    point_gaps: Floats = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about given points that contradict the map."""
+        return sentences_about(self.point_gaps)
 
     @cached_property
     def order(self) -> Ints:
@@ -86,6 +100,7 @@ def match(
     source: Analysis,
     target: Analysis,
     *,
+    points: ArrayLike | None = None,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
     progress: Progress | None = None,
@@ -95,6 +110,10 @@ def match(
     Parameters
     ----------
     source, target : Analysis
+    points : (p, 2) int, optional
+        Pairs of vertices, of the source and the target, that belong together. They decide where a symmetry leaves
+        several matchings. One that contradicts everything else is told in the matching's ``warnings``, and its
+        confidence is low.
     flips : mapping of int to +1 or -1, optional
         The sign that a function of the source (from 1) is to have, whatever fits better; all others follow. Functions
         point where those of ``eigenbasis`` do.
@@ -111,7 +130,8 @@ def match(
     Raises
     ------
     RegistrationError
-        If a sign is given for a function that has none, or is not +1 or -1, or a shape was analyzed shell by shell.
+        If points are no pairs of vertices of the two, or one is in two pairs; if a sign is given for a function that
+        has none, or is not +1 or -1; or if a shape was analyzed shell by shell.
 
     References
     ----------
@@ -132,7 +152,8 @@ def match(
     progress = rising(progress or silent)
     shapes = matching_shape(source, section(progress, 0, 0.3)), matching_shape(target, section(progress, 0.3, 0.6))
     rest = section(progress, 0.6, 1)
-    return match_surfaces(source.surface, target.surface, *shapes, flips=flips, mirrored=mirrored, progress=rest)
+    surfaces = source.surface, target.surface
+    return match_surfaces(*surfaces, *shapes, points=points, flips=flips, mirrored=mirrored, progress=rest)
 
 
 @told_if_full
@@ -149,15 +170,22 @@ def match_surfaces(
     source_shape: SpectralShape,
     target_shape: SpectralShape,
     *,
+    points: ArrayLike | None = None,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
     progress: Progress = silent,
 ) -> Matching:
     """Match two shapes as `match` does, from their surfaces and the spectral shapes of these."""
     signs = _checked_signs(flips or {})
+    vertices = checked_points(points, len(source.vertex_of_input), len(target.vertex_of_input))
+    pairs = point_pairs(vertices, source, target, source_shape, target_shape)
+    fit = PointFit(pairs, source_shape, target_shape) if len(vertices) else None
     if not signs and not mirrored and share_topology(source, target):
-        return match_by_number(source_shape, target_shape)
-    return match_shapes(source_shape, target_shape, signs, mirrored=mirrored, progress=progress)
+        by_number = match_by_number(source_shape, target_shape)
+        held = by_number if fit is None else _held_to_points(by_number, fit)
+        if not held.warnings:
+            return held
+    return match_shapes(source_shape, target_shape, signs, fit=fit, mirrored=mirrored, progress=progress)
 
 
 def share_topology(source: Surface, target: Surface) -> bool:
@@ -178,23 +206,28 @@ def match_shapes(
     target: SpectralShape,
     signs: Mapping[int, int] | None = None,
     *,
+    fit: PointFit | None = None,
     mirrored: bool = False,
     progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
     if mirrored:
         source = source.mirrored()
+    searching, fitting = section(progress, 0, 1 if fit is None else 0.75), section(progress, 0.75, 1)
     n_available = min(source.n_functions, target.n_functions)
     scorer = MapScorer(source, target, [min(size, n_available) for size in MATCHING_SIZES])
     if signs:
-        candidates, rivals = _candidates_with_signs(source, target, scorer, signs, progress)
+        candidates, rivals = _candidates_with_signs(source, target, scorer, signs, searching)
     else:
-        candidates = rivals = _ranked_candidates(source, target, scorer, progress)
+        candidates = rivals = _ranked_candidates(source, target, scorer, searching)
+    if fit is not None:
+        candidates, rivals = _drawn_to_points(fit, candidates, rivals, scorer, signs or {}, fitting)
     best, *others = distinct_candidates(candidates, 1 + MAX_ALTERNATIVES)
     confidence = confidence_of(best, rivals)
     # What the best one leaves over is for the alternatives, if they fit.
     alternatives = tuple(_matching_of(other, (1 - confidence) * fit_of(other), mirrored) for other in others)
-    return replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
+    matching = replace(_matching_of(best, confidence, mirrored), alternatives=alternatives)
+    return matching if fit is None else _held_to_points(matching, fit)
 
 
 def _ranked_candidates(
@@ -211,6 +244,52 @@ def _ranked_candidates(
         if confidence_of(best_first[0], best_first) >= SURE:
             break
     return best_first
+
+
+def _drawn_to_points(
+    fit: PointFit,
+    candidates: list[Candidate],
+    rivals: list[Candidate],
+    scorer: MapScorer,
+    signs: Mapping[int, int],
+    progress: Progress,
+) -> tuple[list[Candidate], list[Candidate]]:
+    """Return candidates and rivals, best first, with more that points draw the search to; those that miss them lose."""
+    spectra = spectrum_of(fit.source, fit.pairs.source), spectrum_of(fit.target, fit.pairs.target)
+    candidates, rivals = ranked(fit.handicapped(candidates)), fit.handicapped(rivals)
+    for number, effort in enumerate(EFFORTS):
+        searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
+        hypotheses = find_hypotheses(*spectra, effort, signs, searching).best(effort.n_refined)
+        drawn = fit.handicapped(scorer.score(hypotheses, signs, refining))
+        candidates, rivals = ranked(candidates + drawn), rivals + drawn
+        if confidence_of(candidates[0], rivals) * trust_in(fit.gaps(candidates[0].functional_map)) >= SURE:
+            break
+    return candidates, rivals
+
+
+def held_to_points(
+    matching: Matching,
+    points: ArrayLike,
+    source: Surface,
+    target: Surface,
+    source_shape: SpectralShape,
+    target_shape: SpectralShape,
+) -> Matching:
+    """Return a matching that remembers points, and is less sure the farther from them it is."""
+    vertices = checked_points(points, len(source.vertex_of_input), len(target.vertex_of_input))
+    pairs = point_pairs(vertices, source, target, source_shape, target_shape)
+    return _held_to_points(matching, PointFit(pairs, source_shape, target_shape))
+
+
+def _held_to_points(matching: Matching, fit: PointFit) -> Matching:
+    gaps = fit.gaps_by_number() if matching.same_topology else fit.gaps(with_constant(matching.map))
+    return replace(
+        matching,
+        confidence=matching.confidence * trust_in(gaps),
+        alternatives=tuple(_held_to_points(other, fit) for other in matching.alternatives),
+        points=fit.pairs.vertices,
+        point_gaps=gaps,
+    )
 
 
 def _candidates_with_signs(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...analysis.analysis import Analysis
 from ...choices import FEATURES
@@ -15,6 +16,7 @@ from ...progress import Progress, rising, section, silent
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.point_map import point_map
+from ..eigenfunctions.given_points import point_pairs
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
 from ..eigenfunctions.pair_memory import require_pair
 from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
@@ -62,6 +64,7 @@ def register(
     *,
     reference: int = 0,
     level: int | None = None,
+    points: Sequence[ArrayLike | None] | None = None,
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> list[Segmentation]:
@@ -74,6 +77,9 @@ def register(
         Number of the shape that gives the parts, from 0.
     level : int, optional
         Level of the reference whose features are the parts; its default level if None.
+    points : sequence of (p, 2) int, optional
+        For each of the other shapes, in their order, pairs of vertices that belong together: of the reference and of
+        that shape; None for those without.
     executor : concurrent.futures.Executor, optional
         Runs the pairs: threads, processes or a cluster that offers this interface.
     progress : Progress, optional
@@ -88,7 +94,7 @@ def register(
     Raises
     ------
     RegistrationError
-        If there is no such shape.
+        If there is no such shape, or the points are not pairs of vertices for each of the others.
     LevelError
         If the reference has no such level.
 
@@ -113,8 +119,11 @@ def register(
     reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
     prepared = prepare_reference(analyses[reference], reference_segmentation)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
+    given = [None] * len(others) if points is None else list(points)
+    if len(given) != len(others):
+        raise RegistrationError(f"There are points for {len(given)} shapes, and {len(others)} to register.")
     run = _run_serially if executor is None else partial(_run_in_executor, executor)
-    segmentations = [result.segmentation for result in run(prepared, others, progress)]
+    segmentations = [_told(result) for result in run(prepared, others, given, progress)]
     segmentations.insert(reference, reference_segmentation)
     return with_disjoint_labels(segmentations, reference)
 
@@ -131,10 +140,12 @@ def with_parts(shape: Divisible, labels: Ints, parts: Parts, level: int) -> Refe
     return Reference(shape, reference_parts(labels, parts, level, shape))
 
 
-def register_one(reference: Reference, target: Analysis, progress: Progress = silent) -> Registered:
+def register_one(
+    reference: Reference, target: Analysis, points: ArrayLike | None = None, progress: Progress = silent
+) -> Registered:
     """Match one shape with the reference and divide it into the same parts."""
     shape = divisible(target, matching_shape(target, section(progress, 0, 0.4)))
-    matching = match_divisible(reference, shape, progress=section(progress, 0.4, 0.8))
+    matching = match_divisible(reference, shape, points=points, progress=section(progress, 0.4, 0.8))
     labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, section(progress, 0.8, 1))
     return Registered(Segmentation(labels.faces, labels.parts, labels.level), matching)
 
@@ -144,6 +155,7 @@ def match_divisible(
     reference: Reference,
     target: Divisible,
     *,
+    points: ArrayLike | None = None,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
     progress: Progress = silent,
@@ -151,7 +163,7 @@ def match_divisible(
     """Match the reference (source) with a target, as `match` does."""
     surfaces = reference.shape.surface, target.surface
     shapes = reference.shape.shape, target.shape
-    return match_surfaces(*surfaces, *shapes, flips=flips, mirrored=mirrored, progress=progress)
+    return match_surfaces(*surfaces, *shapes, points=points, flips=flips, mirrored=mirrored, progress=progress)
 
 
 @told_if_full
@@ -168,7 +180,8 @@ def label_matched(
         May raise `Cancelled`.
     """
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
-    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8))
+    pairs = point_pairs(matching.points, reference.shape.surface, target.surface, source, target.shape)
+    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8), pairs)
     progress(0.8, "Carrying the parts over")
     cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
@@ -178,6 +191,11 @@ def label_matched(
         and len(reference.shape.graph.stands_for) == len(target.graph.stands_for)
     )
     return transfer_labels(reference.parts.given, target, None if same_faces else to_reference, cuts, level)
+
+
+def _told(result: Registered) -> Segmentation:
+    segmentation = result.segmentation
+    return replace(segmentation, warnings=(*segmentation.warnings, *result.matching.warnings))
 
 
 def with_disjoint_labels(segmentations: Sequence[Segmentation], reference: int) -> list[Segmentation]:
@@ -200,19 +218,27 @@ def _renumbered(segmentation: Segmentation, unshared: Ints, first_free: int) -> 
     return replace(segmentation, labels=table[segmentation.labels].astype(np.int32), parts=new_parts)
 
 
-def _run_serially(reference: Reference, targets: Sequence[Analysis], progress: Progress) -> Iterator[Registered]:
+def _run_serially(
+    reference: Reference, targets: Sequence[Analysis], points: Sequence[ArrayLike | None], progress: Progress
+) -> Iterator[Registered]:
     """Yield the registered shapes one after the other."""
-    for number, target in enumerate(targets):
+    for number, (target, given) in enumerate(zip(targets, points, strict=True)):
         step = section(progress, number / len(targets), (number + 1) / len(targets))
-        yield register_one(reference, target, step)
+        yield register_one(reference, target, given, step)
         progress((number + 1) / len(targets), f"Registered {number + 1} of {len(targets)} shapes")
 
 
 def _run_in_executor(
-    executor: Executor, reference: Reference, targets: Sequence[Analysis], progress: Progress
+    executor: Executor,
+    reference: Reference,
+    targets: Sequence[Analysis],
+    points: Sequence[ArrayLike | None],
+    progress: Progress,
 ) -> Iterator[Registered]:
     """Yield the registered shapes in their order; those that have not begun are given up where this is cancelled."""
-    futures = [executor.submit(register_one, reference, target) for target in targets]
+    futures = [
+        executor.submit(register_one, reference, target, given) for target, given in zip(targets, points, strict=True)
+    ]
     try:
         open_futures: set[Future[Registered]] = set(futures)
         while open_futures:
