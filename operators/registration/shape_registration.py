@@ -147,7 +147,7 @@ def register_all(
     reference: AnalysisInput,
     shown: ShownParts,
     targets: list[AnalysisInput],
-    options: MatchOptions,
+    options: list[MatchOptions],
     first_free: int,
     progress: compute.Progress,
 ) -> Registration:
@@ -155,6 +155,8 @@ def register_all(
 
     Parameters
     ----------
+    options : list of MatchOptions
+        One for each target.
     first_free : int
         The least label for parts without a partner on the reference.
     """
@@ -166,11 +168,11 @@ def register_all(
     prepared = prepare_reference(reference.name, source, shown)
     first_free = max(first_free, prepared.highest_label + 1)
     shapes: list[RegisteredShape] = []
-    for number, (given, target) in enumerate(zip(targets, others, strict=True)):
+    for number, (given, target, chosen) in enumerate(zip(targets, others, options, strict=True)):
         named = compute.naming(_step(progress, len(targets) + 1 + number, n_steps), given.name)
-        matching = _recall_matching(prepared, target, options, compute.section(named, 0, MATCHING_SHARE))
+        matching = _recall_matching(prepared, target, chosen, compute.section(named, 0, MATCHING_SHARE))
         carrying = compute.section(named, MATCHING_SHARE, 1)
-        shapes.append(_divide(prepared, given.name, target, matching, options, first_free, carrying))
+        shapes.append(_divide(prepared, given.name, target, matching, chosen, first_free, carrying))
         first_free = max(first_free, shapes[-1].highest_label + 1)
     progress(1.0, "Done")
     return Registration(prepared, tuple(shapes))
@@ -251,7 +253,7 @@ def _recall_matching(
     reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
     """Return the best matching as it was found before, or find and keep it."""
-    key = key_of([reference.key, target.key, sorted(options.flips.items()), options.mirrored])
+    key = key_of([reference.key, target.key, sorted(options.flips.items()), options.mirrored, *options.points.vertices])
     known = _recent_matchings.get(key)
     if known is None:
         known = _match(reference, target, options, progress)
@@ -263,7 +265,12 @@ def _match(
     reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
     return compute.match_divisible(
-        reference.matched, target.shape, flips=options.flips, mirrored=options.mirrored, progress=progress
+        reference.matched,
+        target.shape,
+        points=options.points.vertices,
+        flips=options.flips,
+        mirrored=options.mirrored,
+        progress=progress,
     )
 
 
@@ -279,12 +286,14 @@ def _divide(
     """Return a target divided by the matching that was chosen."""
     matchings = (best, *best.alternatives)
     alternative = options.alternative % len(matchings)
+    matching = matchings[alternative]
+    labels = compute.label_matched(reference.matched, target.shape, matching, first_free, progress)
     diagrams = compute.match_shape_diagrams(reference.matched.shape.shape, target.shape.shape)
     return RegisteredShape(
         name=name,
         result=target.result,
-        labels=compute.label_matched(reference.matched, target.shape, matchings[alternative], first_free, progress),
-        matching=matchings[alternative],
+        labels=replace(labels, warnings=(*labels.warnings, *options.point_warnings(matching))),
+        matching=matching,
         alternative=alternative,
         n_alternatives=len(matchings) - 1,
         by_diagrams=tuple(np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order)).tolist()),

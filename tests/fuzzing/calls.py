@@ -26,7 +26,16 @@ INNER = {
     *("analyzed_surface", "carried", "carried_painting", "connected_branches", "corrected_crossings", "cross_edges"),
     *("divisible", "drawn_borders", "face_graph", "first_own_part", "hill_of", "joined_parts", "label_branches"),
     *("label_matched", "majority_of_polygons", "match_divisible", "match_shape_diagrams", "mixed", "naming"),
-    *("needs_faces", "number_behind", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),
+    *(
+        "needs_faces",
+        "number_behind",
+        "point_warnings",
+        "prepare_reference",
+        "redraw",
+        "relief_of",
+        "renumbered",
+        "section",
+    ),
     *("shortened_borders", "sides", "silent", "taken_over", "tracked_parts", "undivided", "vertex_heights"),
     "with_parts",
 }

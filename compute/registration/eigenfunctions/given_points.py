@@ -23,6 +23,8 @@ FAR = 0.15
 # How much more a map may cost than one that misses a point: what symmetries leave open differs by less, and only maps
 # that cost much more meet wrong points.
 WORTH = 30.0
+# A point that was given wrongly leaves so much of the confidence: all else may be right.
+LEAST_TRUST = 0.1
 # Numbers beyond which nothing changes, but sums and products stay finite: a length between points that no path joins,
 # and the cost of missing many points.
 LONGEST, MOST = 10.0, 1e100
@@ -80,14 +82,15 @@ def _share_of_far(gaps: Floats) -> Floats:
 
 
 def trust_in(gaps: Floats) -> float:
-    """Return 0 to 1: one half if the point that lands farthest from its partner is just too far away."""
-    return float(1 / (1 + (gaps.max(initial=0) / FAR) ** 4))
+    """Return the share of a confidence that is left: one half if the point that is farthest off is just too far."""
+    return max(LEAST_TRUST, float(1 / (1 + (gaps.max(initial=0) / FAR) ** 4)))
 
 
-def sentences_about(gaps: Floats) -> tuple[str, ...]:
-    """Return a sentence for each point that contradicts the map, the first of them number 1."""
+def point_warnings(gaps: Floats, numbers: Sequence[int] | None = None) -> tuple[str, ...]:
+    """Return a sentence for each point that contradicts the map, by its number; from 1 if None."""
     told = "Point {} contradicts everything else, which puts it {:.0%} of the size of the shape away; check it on both."
-    return tuple(told.format(1 + number, gaps[number]) for number in np.flatnonzero(gaps > FAR).tolist())
+    numbers = range(1, 1 + len(gaps)) if numbers is None else numbers
+    return tuple(told.format(number, gap) for number, gap in zip(numbers, gaps.tolist(), strict=True) if gap > FAR)
 
 
 def point_pairs(

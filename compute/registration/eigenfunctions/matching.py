@@ -13,7 +13,7 @@ from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
-from .given_points import PointFit, checked_points, point_pairs, sentences_about, trust_in
+from .given_points import PointFit, checked_points, point_pairs, point_warnings, trust_in
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
 from .pair_memory import require_pair
@@ -82,7 +82,7 @@ class Matching:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences about given points that contradict the map."""
-        return sentences_about(self.point_gaps)
+        return point_warnings(self.point_gaps)
 
     @cached_property
     def order(self) -> Ints:

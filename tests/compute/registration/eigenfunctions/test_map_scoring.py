@@ -25,7 +25,7 @@ def candidates():
     """The identity and a map with two signs flipped, of a ball to itself."""
     shape = spectral_shape(quick(lumpy_ball(2)).matching_basis)
     maps = np.stack([np.eye(8), FLIP])
-    return MapScorer(shape, shape, (9, 12, 17)).score(Hypotheses(maps, np.ones(2), np.ones(2)))
+    return MapScorer(shape, shape, (9, 12, 17)).score(Hypotheses(maps, np.ones(2), np.ones(2), np.zeros(2)))
 
 
 def test_the_identity_commutes_keeps_orientation_and_tears_nothing(candidates):
