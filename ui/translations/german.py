@@ -20,6 +20,8 @@ GERMAN: dict[str, str] = {
     "Other Object": "Anderes Objekt",
     "Name of one object; the active one if empty": "Name des einen Objekts; das aktive, wenn leer",
     "Name of the other object": "Name des anderen Objekts",
+    "Where one of the two points is": "Wo der eine der beiden Punkte ist",
+    "Where the other one is": "Wo der andere ist",
     "Vertex": "Punkt",
     "Other Vertex": "Anderer Punkt",
     "Number of its vertex": "Nummer seines Punktes",
