@@ -10,10 +10,14 @@ from ..blender.typed_properties import IntProperty, PointerProperty, TypedProper
 class EigenpartsPointPair(TypedProperties, bpy.types.PropertyGroup):
     """A vertex of one object and the vertex of another that it belongs to."""
 
-    source: bpy.types.Object | None = PointerProperty(type=bpy.types.Object, name="Object", description="Where one of the two points is")
+    source: bpy.types.Object | None = PointerProperty(
+        type=bpy.types.Object, name="Object", description="Where one of the two points is"
+    )
     source_vertex: int = IntProperty(name="Vertex", description="Number of its vertex")
     n_source: int = IntProperty(name="Vertices", description="How many the mesh had when the point was given")
-    target: bpy.types.Object | None = PointerProperty(type=bpy.types.Object, name="Other Object", description="Where the other one is")
+    target: bpy.types.Object | None = PointerProperty(
+        type=bpy.types.Object, name="Other Object", description="Where the other one is"
+    )
     target_vertex: int = IntProperty(name="Vertex", description="Number of its vertex")
     n_target: int = IntProperty(name="Vertices", description="How many the mesh had when the point was given")
 
