@@ -17,9 +17,9 @@ from .shape_points import shape_points
 from .spectral_shape import SpectralShape
 from .zoomout import nearest_points
 
-# A point that lands farther from its partner contradicts the map, on a surface of area 1; right maps of the first
-# functions are off by 0.02, at most by 0.07.
-FAR = 0.15
+# A point that lands farther from its partner than the second contradicts the map, on a surface of area 1; right maps of
+# the first functions are mostly off by 0.02, and less than the first.
+CLOSE, FAR = 0.05, 0.15
 # How much more a map may cost than one that misses a point: what symmetries leave open differs by less, and only maps
 # that cost much more meet wrong points.
 WORTH = 30.0
@@ -72,13 +72,17 @@ class PointFit:
 
     def handicapped(self, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Return candidates that cost more the farther they send the points from their partners."""
-        handicaps = (np.prod(1 + (WORTH - 1) * _share_of_far(self.gaps(one.functional_map))) for one in candidates)
-        pairs = zip(candidates, handicaps, strict=True)
-        return [replace(candidate, handicap=min(float(handicap), MOST)) for candidate, handicap in pairs]
+        return [replace(one, handicap=_handicap(self.gaps(one.functional_map))) for one in candidates]
 
 
-def _share_of_far(gaps: Floats) -> Floats:
-    return np.minimum((gaps / FAR) ** 2, 1.0)
+def relative_to(best: Candidate, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Return candidates with handicaps in units of that of the best, whose own cost then is what its map costs."""
+    return [replace(one, handicap=one.handicap / best.handicap) for one in candidates]
+
+
+def _handicap(gaps: Floats) -> float:
+    share = np.clip((gaps - CLOSE) / (FAR - CLOSE), 0, 1)
+    return min(float(np.prod(1 + (WORTH - 1) * share**2)), MOST)
 
 
 def trust_in(gaps: Floats) -> float:

@@ -56,7 +56,7 @@ class Candidate:
     tearing : float
         Share of neighbouring points that are torn apart, from 0 to 1; swapped arms on the right body show here.
     handicap : float
-        Factor, at least 1, of the cost of a map that misses given points.
+        Factor of the cost, greater the farther the map is off given points.
     """
 
     start: Floats

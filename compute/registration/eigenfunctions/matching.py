@@ -13,7 +13,7 @@ from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
-from .given_points import PointFit, checked_points, point_pairs, point_warnings, trust_in
+from .given_points import PointFit, checked_points, point_pairs, point_warnings, relative_to, trust_in
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, confidence_of, distinct_candidates, fit_of, ranked
 from .pair_memory import require_pair
@@ -262,9 +262,10 @@ def _drawn_to_points(
         hypotheses = find_hypotheses(*spectra, effort, signs, searching).best(effort.n_refined)
         drawn = fit.handicapped(scorer.score(hypotheses, signs, refining))
         candidates, rivals = ranked(candidates + drawn), rivals + drawn
-        if confidence_of(candidates[0], rivals) * trust_in(fit.gaps(candidates[0].functional_map)) >= SURE:
+        weighed = relative_to(candidates[0], candidates), relative_to(candidates[0], rivals)
+        if confidence_of(weighed[0][0], weighed[1]) * trust_in(fit.gaps(candidates[0].functional_map)) >= SURE:
             break
-    return candidates, rivals
+    return weighed
 
 
 def held_to_points(
