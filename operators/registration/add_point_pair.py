@@ -8,6 +8,7 @@ from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import point_pairs
 from ..blender.typed_properties import IntProperty, StringProperty, TypedProperties
+from ..mesh_data.viewport import redraw_views
 from ..mesh_state.point_pairs import PointEnd, numbered_pairs, shown_places
 from ..messages.user_errors import Refusal, refusals_told
 from ..parts.pick import NOTHING, first_hit, ray_under, show_in_headers, view_under
@@ -105,6 +106,7 @@ def add_pair(context: bpy.types.Context, first: PointEnd, second: PointEnd) -> N
     row = point_pairs(context).add()
     row.source, row.source_vertex, row.n_source = first.obj, first.vertex, first.n_vertices
     row.target, row.target_vertex, row.n_target = second.obj, second.vertex, second.n_vertices
+    redraw_views(context)
 
 
 def point_end(context: bpy.types.Context, name: str, vertex: int) -> PointEnd:

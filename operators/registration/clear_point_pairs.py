@@ -4,6 +4,7 @@ import bpy
 
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import point_pairs
+from ..mesh_data.viewport import redraw_views
 
 
 class EIGENPARTS_OT_clear_point_pairs(bpy.types.Operator):
@@ -21,6 +22,7 @@ class EIGENPARTS_OT_clear_point_pairs(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> Outcome:
         point_pairs(context).clear()
+        redraw_views(context)
         return {"FINISHED"}
 
 

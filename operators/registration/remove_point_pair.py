@@ -5,6 +5,7 @@ import bpy
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import point_pairs
 from ..blender.typed_properties import IntProperty, TypedProperties
+from ..mesh_data.viewport import redraw_views
 from ..messages.user_errors import Refusal, refusals_told
 
 
@@ -22,6 +23,7 @@ class EIGENPARTS_OT_remove_point_pair(TypedProperties, bpy.types.Operator):
             if self.number > len(point_pairs(context)):
                 raise Refusal(f"There is no pair of points with the number {self.number}.")
             point_pairs(context).remove(self.number - 1)
+            redraw_views(context)
             return {"FINISHED"}
         return {"CANCELLED"}
 
