@@ -31,6 +31,8 @@ def parse(argv: list[str]) -> argparse.Namespace:
         parser.error("--timeout ends processes, so it does not go with --in-process")
     if options.memory_limit and not CAN_LIMIT_MEMORY:
         parser.error("--memory-limit needs Linux: this system cannot limit the memory of a process")
+    if options.points and options.command == "batch" and not options.source:
+        parser.error("--points needs a --source, whose vertices it names")
     if options.command in ("register", "transfer") and options.source is None:
         options.source = options.files[0]
     return options
@@ -45,7 +47,7 @@ def _add_segment(commands: Commands) -> None:
     _add_files(command)
     _add_division(command)
     _add_execution(command)
-    command.set_defaults(command="segment", source=None, reference=None, mirrored=False)
+    command.set_defaults(command="segment", source=None, reference=None, mirrored=False, points=None)
 
 
 def _add_register(commands: Commands) -> None:
@@ -110,6 +112,12 @@ def _add_reference(command: argparse.ArgumentParser) -> None:
         "--reference", metavar="NAME", help="object of that file that is the reference; else the first"
     )
     command.add_argument("--mirrored", action="store_true", help="the files are mirror images of the reference")
+    command.add_argument(
+        "--points",
+        metavar="JSON",
+        type=Path,
+        help='pairs of vertices that belong together, {"points": [[source, target], ...]}; the same for all files',
+    )
 
 
 def _add_object(command: argparse.ArgumentParser) -> None:

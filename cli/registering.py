@@ -21,6 +21,7 @@ from ..operators.registration.mesh_registration import SharedParts
 from ..operators.registration.shape_registration import MatchableShape, PreparedReference
 from . import formats
 from .formats import OpenFile
+from .formats.points import points_of, settings_of_points
 from .objects import analysis_settings, chosen_objects, report_each, row_of
 from .reports.report import ObjectRow, Settings
 from .results.digests import digest_of
@@ -57,7 +58,7 @@ class Register:
         source = {"file": options.source.name, "digest": digest_of(options.source), "object": options.reference}
         given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
         chosen_parts = {"choice": choice_of(options), "mirrored": options.mirrored}
-        return {"command": "register", **given, **chosen_parts, "source": source}
+        return {"command": "register", **given, **chosen_parts, **settings_of_points(options.points), "source": source}
 
     def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
         """Leave a file open with its meshes divided, and return it with a row for each."""
@@ -93,7 +94,11 @@ class Register:
                 shapes[obj.name] = shape_registration.matchable_shape(given, silent)
             except (Refusal, EngineError) as error:
                 errors[obj.name] = error
-        matchings = shape_registration.match_all(prepared, list(shapes.values()), shared.options, silent)
+        options = [shared.options] * len(shapes)
+        try:
+            matchings = shape_registration.match_all(prepared, list(shapes.values()), options, silent)
+        except (Refusal, EngineError) as error:
+            return errors | dict.fromkeys(shapes, error)
         return errors | dict(zip(shapes, zip(shapes.values(), matchings, strict=True), strict=True))
 
     def _divide(self, obj: bpy.types.Object, matched: Matched, reference: bpy.types.Object | None) -> ObjectRow:
@@ -127,6 +132,6 @@ def _prepare(options: argparse.Namespace) -> Reference:
     prepared = shape_registration.prepare_reference(obj.name, shape, shown)
     # Its names and colours are read off the mesh that shows its parts; this file is not written.
     written = mesh_registration.write_reference(obj, prepared)
-    match_options = MatchOptions(mirrored=options.mirrored)
+    match_options = MatchOptions(mirrored=options.mirrored, points=points_of(options.points))
     shared = mesh_registration.shared_parts(obj, prepared, written, match_options, settings)
     return Reference(prepared, shared, repairs)

@@ -18,6 +18,7 @@ from ..operators.transfer.layer_reading import LayerChoice
 from ..operators.transfer.mesh_transfer import TransferSettings, TransferSource
 from . import formats
 from .formats import OpenFile
+from .formats.points import points_of, settings_of_points
 from .objects import chosen_objects, report_each
 from .reports.report import ObjectRow, Settings
 from .results.digests import digest_of
@@ -39,7 +40,7 @@ class Transfer:
             raise Refusal(f"the source {options.source}: there is no such file.")
         source = {"file": options.source.name, "digest": digest_of(options.source), "object": options.reference}
         given = {"object": options.object, "layers": options.layers, "mirrored": options.mirrored}
-        return {"command": "transfer", **given, "source": source}
+        return {"command": "transfer", **given, **settings_of_points(options.points), "source": source}
 
     def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
         """Leave a file open whose meshes have the layers of the source, and return it with a row for each."""
@@ -70,7 +71,8 @@ class Transfer:
     def _transfer(self, obj: bpy.types.Object) -> ObjectRow:
         start = time.perf_counter()
         source, settings = self._source, self._settings
-        target = mesh_transfer.read_target(bpy.context, obj, source, settings)
+        points = points_of(self._options.points)
+        target = mesh_transfer.read_target(bpy.context, obj, source, settings, points)
         mapped = map_to_all(source.shape, source.layers, [target], fills=settings.fills_unsure, progress=silent)
         (messages,) = mesh_transfer.write_all([obj], mapped, source, settings)
         row = _row(obj, source, mapped[0], messages)

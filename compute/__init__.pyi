@@ -39,6 +39,7 @@ from .registration.dense.transfer import mixed as mixed
 from .registration.dense.transfer import taken_over as taken_over
 from .registration.dense.transfer import transfer_corners as transfer_corners
 from .registration.dense.transfer import transfer_displacements as transfer_displacements
+from .registration.eigenfunctions.given_points import point_warnings as point_warnings
 from .registration.eigenfunctions.matching import Matching as Matching
 from .registration.eigenfunctions.matching import match as match
 from .registration.eigenfunctions.matching import matching_shape as matching_shape

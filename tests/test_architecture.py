@@ -23,7 +23,7 @@ OUTSIDE = {
     "compute": {"numpy", "scipy"},
     "operators": {"bl_operators", "bmesh", "bpy", "bpy_extras", "mathutils", "numpy"},
     "cli": {"bpy", "distributed", "numpy"},
-    "ui": {"bl_ui", "bpy", "gpu", "gpu_extras", "mathutils", "numpy"},
+    "ui": {"bl_ui", "blf", "bpy", "bpy_extras", "gpu", "gpu_extras", "mathutils", "numpy"},
 }
 
 # With it loaded, a Python that has Blender as a module may wait for ever at its end (`cli/processes/ending.py`).

@@ -4,6 +4,8 @@ import bpy
 from bpy.app.translations import pgettext_iface as translated
 
 from ..operators.blender.known_values import present
+from ..operators.blender.registered_settings import point_pairs
+from ..operators.mesh_state.point_pairs import PointEnd, ends_of
 from ..operators.mesh_state.references import registered_objects
 from ..operators.mesh_state.registration_record import SURE, Match
 from .tab import EigenpartsPanel, draw_direction, main_row
@@ -63,4 +65,31 @@ def _told_by_diagrams(by_diagrams: tuple[int, ...]) -> str:
     return translated("By diagrams: {signs}").format(signs=signs)
 
 
-register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_register,))
+class EIGENPARTS_PT_points(EigenpartsPanel, bpy.types.Panel):
+    bl_label = "Points"
+    bl_parent_id = "EIGENPARTS_PT_register"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        rows = point_pairs(context)
+        column = self.layout.column(align=True)
+        for number, row in enumerate(rows, start=1):
+            line = column.row(align=True)
+            ends = ends_of(row)
+            line.alert = not ends or not all(end.is_there for end in ends)
+            line.label(text=f"{number}  {_told_of_ends(ends)}", translate=False)
+            present(line.operator("eigenparts.remove_point_pair", text="", icon="X")).number = number
+        buttons = self.layout.row(align=True)
+        # The fields of the call are for scripts; the button lets the user click.
+        buttons.operator("eigenparts.add_point_pair", icon="ADD")
+        if len(rows):
+            buttons.operator("eigenparts.clear_point_pairs", text="", icon="TRASH")
+
+
+def _told_of_ends(ends: tuple[PointEnd, ...]) -> str:
+    if not ends:
+        return translated("An object is gone")
+    return " – ".join(f"{end.obj.name} {end.vertex}" for end in ends)
+
+
+register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_PT_register, EIGENPARTS_PT_points))

@@ -42,6 +42,7 @@ OPTIONS = {
     "--mode": "mode",
     "--source": "source",
     "--reference": "reference",
+    "--points": "points",
     "--memory-limit": "memory_limit",
 }
 THREAD_SETTINGS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -182,7 +183,7 @@ def units_of(jobs: Sequence[Job], options: argparse.Namespace) -> Iterator[Unit]
 def arguments_of(options: argparse.Namespace) -> list[str]:
     """Return the command and the options that decide what becomes of a file, to give them to another process."""
     command = "transfer" if options.command == "transfer" else "register" if options.source else "segment"
-    given = vars(options) | {"source": options.source and options.source.absolute()}
+    given = vars(options) | {name: path.absolute() for name in ("source", "points") if (path := vars(options)[name])}
     values = {name: given[key] for name, key in OPTIONS.items() if given.get(key) is not None}
     layers = [f"--layers={','.join(options.layers)}"] if command == "transfer" else []
     switches = [f"--{name}" for name in ("mirrored", "overwrite") if getattr(options, name)]

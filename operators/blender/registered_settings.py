@@ -14,6 +14,7 @@ import bpy
 
 # The names of the properties on windows, scenes and meshes.
 SETTINGS, SKELETON_SETTINGS, TRANSFER_SETTINGS = "eigenparts", "eigenparts_skeleton", "eigenparts_transfer"
+POINT_PAIRS = "eigenparts_points"
 
 Row = TypeVar("Row", covariant=True)
 
@@ -29,6 +30,9 @@ class Rows(Protocol[Row]):
 
     def add(self) -> Row:
         """Return a new row at the end."""
+
+    def remove(self, place: int, /) -> None:
+        """Remove one row."""
 
     def clear(self) -> None:
         """Remove all rows."""
@@ -50,6 +54,17 @@ class CorrectionRow(Protocol):
     place: int
     title: str
     rests: bool
+
+
+class PointPairRow(Protocol):
+    """A pair of points: a vertex of each of two objects, and how many these had when it was given."""
+
+    source: bpy.types.Object | None
+    source_vertex: int
+    n_source: int
+    target: bpy.types.Object | None
+    target_vertex: int
+    n_target: int
 
 
 class MeshSettings(Protocol):
@@ -108,6 +123,11 @@ def analysis_settings(context: bpy.types.Context) -> AnalysisSettings:
 def skeleton_settings(context: bpy.types.Context) -> object:
     """Return the options of skeletons."""
     return getattr(context.scene, SKELETON_SETTINGS)
+
+
+def point_pairs(context: bpy.types.Context) -> Rows[PointPairRow]:
+    """Return the pairs of points that were given in a scene."""
+    return getattr(context.scene, POINT_PAIRS)
 
 
 def transfer_settings(context: bpy.types.Context) -> TransferSettings:

@@ -1,4 +1,4 @@
-"""Let solid mode show the active colours, and put back what the user had."""
+"""The 3D views: solid mode shows the active colours and gets back what the user had; overlays are drawn anew."""
 
 from collections.abc import Iterator
 
@@ -28,6 +28,14 @@ def restore_colour_types(context: bpy.types.Context) -> None:
     for window in present(context.window_manager).windows:
         if window.screen.get(PREVIOUS_TYPES) is not None:
             del window.screen[PREVIOUS_TYPES]
+
+
+def redraw_views(context: bpy.types.Context) -> None:
+    """Draw every visible 3D view again, where an overlay shows what Blender does not know of."""
+    for window in present(context.window_manager).windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
 
 
 def _shadings(context: bpy.types.Context) -> Iterator[tuple[bpy.types.Screen, int, bpy.types.View3DShading]]:

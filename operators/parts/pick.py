@@ -1,5 +1,7 @@
 """Operator: make a part active by clicking it in the view."""
 
+from dataclasses import dataclass
+
 import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
@@ -18,6 +20,15 @@ NOTHING = "There is no surface here."
 NO_PARTS = "This object has no parts; analyze it first."
 # Where a ray that goes on behind a surface begins, as a fraction of the way to it, and how often it does at most.
 BEHIND, MOST_PASSED = 1e-5, 1000
+
+
+@dataclass(frozen=True)
+class Hit:
+    """A surface that a ray met: the face of the object as its modifiers leave it, and the place in the world."""
+
+    obj: bpy.types.Object
+    face: int
+    place: Vector
 
 
 class EIGENPARTS_OT_pick_part(TypedProperties, bpy.types.Operator):
@@ -53,7 +64,7 @@ class EIGENPARTS_OT_pick_part(TypedProperties, bpy.types.Operator):
         if not status.is_picking:
             return {"CANCELLED"}
         self._has_picked = False
-        _show_in_headers(HOW)
+        show_in_headers(HOW)
         present(context.window).cursor_modal_set("EYEDROPPER")
         present(context.window_manager).modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -73,25 +84,21 @@ class EIGENPARTS_OT_pick_part(TypedProperties, bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the view back; Blender too ends the operator, such as when a file is loaded."""
         job_status(context).is_picking = False
-        _show_in_headers(None)
+        show_in_headers(None)
         present(context.window).cursor_modal_restore()
 
     def _pick_under(
         self, context: bpy.types.Context, area: bpy.types.Area, region: bpy.types.Region, event: bpy.types.Event
     ) -> None:
-        place, view = (event.mouse_x - region.x, event.mouse_y - region.y), area.spaces.active
-        assert isinstance(region.data, bpy.types.RegionView3D)
+        view = area.spaces.active
         assert isinstance(view, bpy.types.SpaceView3D)
-        origin, direction = (
-            action(region, region.data, place) for action in (region_2d_to_origin_3d, region_2d_to_vector_3d)
-        )
         try:
-            name = pick(context, origin, direction, view)
+            name = pick(context, *ray_under(region, event), view)
         except Refusal as refusal:
-            _show_in_headers(f"{refusal} {HOW}")
+            show_in_headers(f"{refusal} {HOW}")
         else:
             self._has_picked = True
-            _show_in_headers(f"{name}. {HOW}")
+            show_in_headers(f"{name}. {HOW}")
 
 
 def pick(
@@ -111,8 +118,9 @@ def pick(
     Refusal
         If the ray meets nothing, or what it meets has no parts; nothing is changed then.
     """
-    obj, face = _first_hit(context, origin, direction, view)
-    part = _part_of_face(context, obj, face)
+    hit = first_hit(context, origin, direction, view)
+    obj = hit.obj
+    part = _part_of_face(context, obj, hit.face)
     settings = mesh_settings(mesh_of(obj))
     parts = [row.part for row in settings.rows]
     if part not in parts:
@@ -136,25 +144,33 @@ def view_under(screen: bpy.types.Screen, x: int, y: int) -> tuple[bpy.types.Area
     return None
 
 
-def _show_in_headers(text: str | None) -> None:
-    """Show a text above all 3D views, or what is there otherwise; views come and go while parts are picked."""
+def ray_under(region: bpy.types.Region, event: bpy.types.Event) -> tuple[Vector, Vector]:
+    """Return where the ray from the viewer through the mouse begins, and its direction, in the world."""
+    place = event.mouse_x - region.x, event.mouse_y - region.y
+    assert isinstance(region.data, bpy.types.RegionView3D)
+    origin, direction = (
+        action(region, region.data, place) for action in (region_2d_to_origin_3d, region_2d_to_vector_3d)
+    )
+    return origin, direction
+
+
+def show_in_headers(text: str | None) -> None:
+    """Show a text above all 3D views, or what is there otherwise; views come and go while something is clicked."""
     for screen in bpy.data.screens:
         for area in screen.areas:
             if area.type == "VIEW_3D":
                 area.header_text_set(text and in_language(text))
 
 
-def _first_hit(
-    context: bpy.types.Context, origin: Vector, direction: Vector, view: bpy.types.SpaceView3D | None
-) -> tuple[bpy.types.Object, int]:
-    """Return the first object that a ray meets, and the face of it as its modifiers leave it."""
+def first_hit(context: bpy.types.Context, origin: Vector, direction: Vector, view: bpy.types.SpaceView3D | None) -> Hit:
+    """Return the first surface that a ray meets; what cannot be seen in a view is passed through."""
     depsgraph = context.evaluated_depsgraph_get()
     for _ in range(MOST_PASSED):
         found, place, _, face, obj, _ = present(context.scene).ray_cast(depsgraph, origin, direction)
         if not found or obj is None:
             break
         if view is None or obj.visible_in_viewport_get(view):
-            return obj, face
+            return Hit(obj, face, place)
         origin = place + BEHIND * (place - origin)
     raise Refusal(NOTHING)
 

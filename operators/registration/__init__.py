@@ -3,5 +3,9 @@
 import bpy
 
 register, unregister = bpy.utils.register_submodule_factory(
-    __package__, ["register_selected", "flip_function", "next_alternative"]
+    __package__,
+    [
+        *("register_selected", "flip_function", "next_alternative"),
+        *("point_pair_list", "add_point_pair", "remove_point_pair", "clear_point_pairs"),
+    ],
 )

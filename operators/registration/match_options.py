@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ... import compute
+from ..mesh_state.point_pairs import NO_POINTS, GivenPoints
 from ..mesh_state.registration_record import Match
 
 
@@ -20,11 +22,18 @@ class MatchOptions:
         0 for the best matching.
     mirrored : bool
         Match the mirror image of the reference.
+    points : GivenPoints
+        Pairs of vertices, of the reference and the mesh, that belong together.
     """
 
     flips: Mapping[int, int] = field(default_factory=dict)
     alternative: int = 0
     mirrored: bool = False
+    points: GivenPoints = NO_POINTS
+
+    def point_warnings(self, matching: compute.Matching) -> tuple[str, ...]:
+        """Return a sentence for each of the points that contradicts a matching."""
+        return compute.point_warnings(matching.point_gaps, self.points.numbers)
 
 
 def remembered_options(match: Match) -> MatchOptions:

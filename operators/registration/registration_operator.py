@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import bpy
@@ -13,6 +13,7 @@ from ..blender.registered_settings import job_status
 from ..jobs.background import BackgroundOperator
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.viewport import show_vertex_colours
+from ..mesh_state.point_pairs import points_between
 from ..parts.analysis_settings import AnalysisSettings
 from . import mesh_registration
 from .match_options import MatchOptions
@@ -43,11 +44,12 @@ class RegistrationOperator(BackgroundOperator):
         """Read all meshes; whatever stands in the way is told now."""
         given, shown = mesh_registration.read_reference(context, reference, settings)
         others = [mesh_registration.read_target(context, obj, settings) for obj in targets]
+        each = [replace(options, points=points_between(context, reference, obj)) for obj in targets]
         first_free = mesh_registration.first_free_label(context, reference, targets)
         handles = RegistrationHandles(
             MeshHandle.of(reference), tuple(MeshHandle.of(obj) for obj in targets), options, settings
         )
-        return partial(register_all, given, shown, others, options, first_free), handles
+        return partial(register_all, given, shown, others, each, first_free), handles
 
     def finish(self, context: bpy.types.Context, handles: RegistrationHandles, registration: Registration) -> Outcome:
         reference = handles.reference.find_object(mesh_registration.NO_REFERENCE)

@@ -149,7 +149,7 @@ def register_all(
     reference: AnalysisInput,
     shown: ShownParts,
     targets: list[AnalysisInput],
-    options: MatchOptions,
+    options: list[MatchOptions],
     first_free: int,
     progress: compute.Progress,
 ) -> Registration:
@@ -157,6 +157,8 @@ def register_all(
 
     Parameters
     ----------
+    options : list of MatchOptions
+        One for each target.
     first_free : int
         The least label for parts without a partner on the reference.
     """
@@ -170,16 +172,19 @@ def register_all(
     matchings = match_all(prepared, others, options, matching)
     first_free = max(first_free, prepared.highest_label + 1)
     shapes: list[RegisteredShape] = []
-    for number, (given, target) in enumerate(zip(targets, others, strict=True)):
+    for number, (given, target, chosen) in enumerate(zip(targets, others, options, strict=True)):
         step = compute.naming(_step(dividing, number, n), given.name)
-        shapes.append(divide(prepared, given.name, target, matchings[number], options, first_free, step))
+        shapes.append(divide(prepared, given.name, target, matchings[number], chosen, first_free, step))
         first_free = max(first_free, shapes[-1].highest_label + 1)
     progress(1.0, "Done")
     return Registration(prepared, tuple(shapes))
 
 
 def match_all(
-    reference: PreparedReference, targets: list[MatchableShape], options: MatchOptions, progress: compute.Progress
+    reference: PreparedReference,
+    targets: list[MatchableShape],
+    options: list[MatchOptions],
+    progress: compute.Progress,
 ) -> list[compute.Matching]:
     """Return the best matchings of a reference with targets, such that they agree with each other, and keep them.
 
@@ -187,8 +192,11 @@ def match_all(
     """
     matching, agreeing = compute.section(progress, 0, 0.5), compute.section(progress, 0.5, 1)
     n = len(targets)
-    own = [_recall_matching(reference, target, options, _step(matching, k, n)) for k, target in enumerate(targets)]
-    if options.flips or options.alternative:
+    own = [
+        _recall_matching(reference, target, chosen, _step(matching, k, n))
+        for k, (target, chosen) in enumerate(zip(targets, options, strict=True))
+    ]
+    if any(chosen.flips or chosen.alternative for chosen in options):
         return own
 
     def match_pairs(pairs: list[tuple[int, int]], progress: compute.Progress) -> list[compute.Matching]:
@@ -197,8 +205,8 @@ def match_all(
 
     shapes = [target.shape for target in targets]
     agreed = compute.agreed_matchings(reference.matched, shapes, own, match_pairs, agreeing)
-    for target, found in zip(targets, agreed, strict=True):
-        _recent_matchings.put(_key_of_pair(reference.key, target, options), found, 1)
+    for target, chosen, found in zip(targets, options, agreed, strict=True):
+        _recent_matchings.put(_key_of_pair(reference.key, target, chosen), found, 1)
     return agreed
 
 
@@ -251,12 +259,14 @@ def divide(
     """Return a target divided by the matching that was chosen."""
     matchings = (best, *best.alternatives)
     alternative = options.alternative % len(matchings)
+    matching = matchings[alternative]
+    labels = compute.label_matched(reference.matched, target.shape, matching, first_free, progress)
     diagrams = compute.match_shape_diagrams(reference.matched.shape.shape, target.shape.shape)
     return RegisteredShape(
         name=name,
         result=target.result,
-        labels=compute.label_matched(reference.matched, target.shape, matchings[alternative], first_free, progress),
-        matching=matchings[alternative],
+        labels=replace(labels, warnings=(*labels.warnings, *options.point_warnings(matching))),
+        matching=matching,
         alternative=alternative,
         n_alternatives=len(matchings) - 1,
         by_diagrams=tuple(np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order)).tolist()),
@@ -306,14 +316,19 @@ def _recall(key: str, find: Callable[[], compute.Matching]) -> compute.Matching:
 
 
 def _key_of_pair(source: str, target: MatchableShape, options: MatchOptions) -> str:
-    return key_of([source, target.key, sorted(options.flips.items()), options.mirrored])
+    return key_of([source, target.key, sorted(options.flips.items()), options.mirrored, *options.points.vertices])
 
 
 def _match(
     reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
     return compute.match_divisible(
-        reference.matched, target.shape, flips=options.flips, mirrored=options.mirrored, progress=progress
+        reference.matched,
+        target.shape,
+        points=options.points.vertices,
+        flips=options.flips,
+        mirrored=options.mirrored,
+        progress=progress,
     )
 
 

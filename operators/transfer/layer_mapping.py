@@ -185,7 +185,9 @@ def _new_maps(
 def _key_of_map(source: TransferShape, target: TransferShape) -> str:
     places = [array for shape in (source, target) for array in (shape.arrays.vertices, shape.arrays.triangles)]
     options = target.options
-    return key_of([*places, options.mirrored, sorted(options.flips.items()), options.alternative])
+    return key_of(
+        [*places, options.mirrored, sorted(options.flips.items()), options.alternative, *options.points.vertices]
+    )
 
 
 def _steps(progress: compute.Progress, number: int) -> list[compute.Progress]:
@@ -228,6 +230,7 @@ def _correspond(
     matching = compute.match(
         source_analysis,
         target_analysis,
+        points=options.points.vertices,
         flips=dict(options.flips),
         mirrored=options.mirrored,
         progress=compute.section(progress, 0, 0.5),
@@ -236,7 +239,7 @@ def _correspond(
     matching = choices[options.alternative % len(choices)]
     if matching.confidence < NO_MATCH:
         not_alike = NOT_ALIKE.format(source.name, target.name, matching.confidence)
-        raise Refusal(" ".join([not_alike, *_unfinished(source, target)]))
+        raise Refusal(" ".join([not_alike, *options.point_warnings(matching), *_unfinished(source, target)]))
     return compute.correspond(
         source_analysis, target_analysis, matching=matching, progress=compute.section(progress, 0.5, 1)
     )
@@ -260,6 +263,7 @@ def _mapped(
         warnings=(
             *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
             *(f"{target.name}: {warning}" for warning in shape_map.target_warnings),
+            *(f"{target.name}: {warning}" for warning in target.options.point_warnings(correspondence.matching)),
         ),
         unfinished=_unfinished(source, target),
     )

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
 from ..mesh_data.unfinished_meshes import modifiers_that_add
+from ..mesh_state.point_pairs import NO_POINTS, GivenPoints
 from ..mesh_state.registration_record import SURE
 from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import Messages
@@ -89,13 +90,18 @@ def read_source(context: bpy.types.Context, obj: bpy.types.Object, settings: Tra
 
 
 def read_target(
-    context: bpy.types.Context, obj: bpy.types.Object, source: TransferSource, settings: TransferSettings
+    context: bpy.types.Context,
+    obj: bpy.types.Object,
+    source: TransferSource,
+    settings: TransferSettings,
+    points: GivenPoints = NO_POINTS,
 ) -> TransferShape:
     """Return the shape of an object that the layers of a source can be written to, or say why they cannot."""
     match = read(mesh_of(obj)).match
     # What the user chose of the matchings with this source holds for the transfer as well.
     known = remembered_options(match) if match is not None and match.reference == source.name else MatchOptions()
-    shape = _read_shape(context, obj, replace(known, mirrored=settings.choice.swaps_sides), settings)
+    options = replace(known, mirrored=settings.choice.swaps_sides, points=points)
+    shape = _read_shape(context, obj, options, settings)
     refuse_obstacles(obj, source.layers, settings.mix)
     return shape
 

@@ -16,6 +16,7 @@ from ..blender.registered_settings import transfer_settings
 from ..jobs.background import BackgroundOperator
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.selected_meshes import other_meshes
+from ..mesh_state.point_pairs import points_between
 from ..messages.user_errors import Refusal
 from ..registration.register_selected import can_start_with_others
 from . import mesh_transfer
@@ -64,7 +65,10 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
         if not targets:
             raise Refusal(NOTHING_ELSE)
         source = mesh_transfer.read_source(context, present(context.object), settings)
-        shapes = [mesh_transfer.read_target(context, obj, source, settings) for obj in targets]
+        shapes = [
+            mesh_transfer.read_target(context, obj, source, settings, points_between(context, context.object, obj))
+            for obj in targets
+        ]
         handles = TransferHandles(source, tuple(MeshHandle.of(obj) for obj in targets), settings)
         return partial(_map_layers, source, shapes, settings), handles
 

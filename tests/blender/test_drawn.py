@@ -113,6 +113,13 @@ def a_registered_mesh_with_alternatives():
     match["n_alternatives"], match["confidence"], match["by_diagrams"] = 2, 0.3, [1, -2, 0]
 
 
+def points_that_were_given():
+    for name in ("gone", "there"):
+        small_star(name)
+        bpy.ops.eigenparts.add_point_pair(source=name, source_vertex=1, target=small_star().name, target_vertex=2)
+    bpy.data.objects.remove(bpy.data.objects["gone"])
+
+
 def a_job(operator):
     def running():
         an_analyzed_mesh()
@@ -182,7 +189,7 @@ STATES = [
     *(nothing_at_all, nothing_selected, a_new_mesh, a_new_mesh_with_a_field_of_its_own),
     *(a_field_of_its_own_without_a_mesh, an_analyzed_mesh, an_active_part, an_eigenfunction_with_hints, all_outputs),
     *(corrections, a_resting_correction, edit_mode, sculpt_mode, several_meshes_and_named_groups, a_registered_mesh),
-    *(a_registered_mesh_with_alternatives, parts_being_picked, an_error_that_nobody_foresaw),
+    *(points_that_were_given, a_registered_mesh_with_alternatives, parts_being_picked, an_error_that_nobody_foresaw),
     *(a_change_that_the_panel_refuses, a_damaged_state, a_newer_state, a_traced_complex, a_rig_that_was_just_made),
     a_character_of_somebody,
     *map(a_job, ("eigenparts.analyze", "eigenparts.register_selected", "eigenparts.transfer")),
@@ -225,7 +232,8 @@ def test_what_operators_show_afterwards_is_there():
 
 def test_every_operator_is_in_reach(preferences):
     in_reach = set(draw_preferences(preferences).operators)
-    for state in (corrections, a_registered_mesh_with_alternatives, a_job("eigenparts.analyze")):
+    states = corrections, points_that_were_given, a_registered_mesh_with_alternatives, a_job("eigenparts.analyze")
+    for state in states:
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         state()
         in_reach |= draw_everything().operators

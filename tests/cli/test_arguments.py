@@ -42,6 +42,7 @@ def test_layers_are_a_set_of_known_kinds(parse):
         (["segment", "a.off", "--json", "--json-lines"], "not allowed with"),
         (["segment", "a.off", "--jobs", "2", "--scheduler", "tcp://host:8786"], "not allowed with"),
         (["transfer", "a.off", "--layers", "groups,bones"], "must be some of groups"),
+        (["batch", "files", "--points", "points.json"], "--points needs a --source"),
         (["segment", "a.off", "--output", ""], "must be a folder"),
         (["segment", "a.off", "--output", __file__], "must be a folder"),
         (["segment"], "required: FILE"),

@@ -38,7 +38,7 @@ METHOD = {
     "evidence": f"{map_confidence.CURVATURE_WEIGHT:g} min(ρ, {map_confidence.FULL_AGREEMENT:g})"
     f" - {map_confidence.COST_WEIGHT:g} ln(cost",
     "doubtful cost": f"(1 + cost / {power(map_confidence.DOUBTFUL_COST)})",
-    "least cost": f"(cost + {power(map_confidence.LEAST_COST)})",
+    "least cost": f"(cost + {power(map_scoring.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
     "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",
     "nodes": f"up to {by_shape.N_NODES} nodes",

@@ -107,6 +107,14 @@ class Case:
         return compute.correspond(self.analysis, self.target)
 
     @property
+    def points(self) -> Any:
+        """Some pairs of vertices, seldom of others than there are."""
+        n_pairs = int(self.rng.integers(0, 4))
+        shapes = len(self.mesh.vertices), len(self.other_mesh.vertices)
+        pairs = np.stack([self.rng.choice(n, n_pairs, replace=n < n_pairs) for n in shapes], axis=1)
+        return self.usual(None, pairs, pairs, wrong=(pairs + 10**6, -1 - pairs, pairs + 0.5, [(0, 0)] * 2, "ab"))
+
+    @property
     def number(self) -> float:
         return float(self._choice(*self.rng.standard_normal(4), 0, -1, 0.01, 1, 1e300, np.nan, np.inf))
 
@@ -153,6 +161,8 @@ MAKERS: dict[str, Maker] = {
     "matching": lambda case: case._choice(None, None, compute.match(case.analysis, case.target)),
     "mirrored": lambda case: case._choice(False, True),
     "flips": lambda case: case.usual(None, {1: -1}, {1: 1, 2: -1}, wrong=({0: 1}, {3: 0})),
+    "points": lambda case: case.points,
+    "register.points": lambda case: case.usual(None, [case.points], wrong=([], [case.points] * 3)),
     "executor": lambda case: None,
     "reference": lambda case: case.usual(0, 0, 1, wrong=(-1, 5)),
     "first": lambda case: case.analysis.diagram,

@@ -42,7 +42,16 @@ INNER = {
         "mixed",
         "naming",
     ),
-    *("needs_faces", "number_behind", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),
+    *(
+        "needs_faces",
+        "number_behind",
+        "point_warnings",
+        "prepare_reference",
+        "redraw",
+        "relief_of",
+        "renumbered",
+        "section",
+    ),
     *("shortened_borders", "sides", "silent", "taken_over", "tracked_parts", "undivided", "vertex_heights"),
     "with_parts",
 }

@@ -4,9 +4,10 @@ import numpy as np
 
 from ...surface.mesh import Ints
 from ...surface.orientation import outward_triangles
+from ..eigenfunctions.shape_points import nearest_known, shape_points
 from ..eigenfunctions.zoomout import nearest_rows
 from .isomorphism import isomorphism, may_be_isomorphic
-from .shape_pair import Image, ShapePair, nearest_known, shape_points, triangle_around
+from .shape_pair import Image, ShapePair, triangle_around
 from .surface_points import SurfacePoints
 
 
@@ -31,7 +32,8 @@ def _vertex_map(pair: ShapePair) -> Ints | None:
         return None
     if pair.matching.mirrored:
         source = source[:, ::-1]
-    source_points, target_points = shape_points(pair.source, pair.source_shape), pair.target_points
+    source_points = shape_points(pair.source.mesh.vertices, pair.source.surface, pair.source_shape)
+    target_points = pair.target_points
     vertices = np.flatnonzero(source_points.is_analyzed)
     source_rows, target_rows = pair.embedded(source_points.point[vertices], target_points.point)
     guess = pair.source.surface.vertex_of_input[vertices[nearest_rows(target_rows, source_rows)]]

@@ -3,7 +3,8 @@
 import numpy as np
 
 from ...analysis.analysis import Analysis
-from .shape_pair import Image, nearest_known, triangle_around
+from ..eigenfunctions.shape_points import nearest_known
+from .shape_pair import Image, triangle_around
 from .surface_points import SurfacePoints
 
 

@@ -14,7 +14,7 @@ from ..eigenfunctions.zoomout import nearest_rows
 from .confidence import SURE, Landing, landing_confidence
 from .deformation_graph import DeformationGraph, Motion, deformation_graph, motion_towards, warped
 from .flipped_regions import RoughMap, with_regions_unflipped
-from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, Samples, aligned
+from .nonrigid_alignment import CANDIDATES, WRONG_SIDE, Pins, Samples, aligned
 from .point_map import DENSE_SAMPLES
 from .shape_pair import Image, ShapePair
 from .surface_points import SurfacePoints, SurfaceTree, nearest_in_triangles
@@ -71,7 +71,8 @@ def _starts(graph: DeformationGraph, rough: RoughMap) -> list[Motion]:
 def _bent(pair: ShapePair, graph: DeformationGraph, start: Motion, samples: Samples, progress: Progress) -> Bent:
     """Bend the source onto the target from a first motion, and let the vertices of the target land on it."""
     source, target, point = pair.source_shape, pair.target_shape, pair.target_points.point
-    motion = aligned(graph, start, samples.first(N_SAMPLES), target, pair.target_walls.triangles, progress)
+    pins = Pins(pair.given.source, target.positions[pair.given.target])
+    motion = aligned(graph, start, samples.first(N_SAMPLES), target, pair.target_walls.triangles, pins, progress)
     walls = pair.source_walls.triangles
     tree = SurfaceTree(warped(graph, motion), source.triangles, LANDING_TURN, WRONG_SIDE, walls)
     is_inner = pair.target_walls.points[point]

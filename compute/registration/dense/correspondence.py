@@ -16,14 +16,15 @@ from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import first_largest
-from ..eigenfunctions.matching import Matching, match_surfaces
+from ..eigenfunctions.given_points import FAR
+from ..eigenfunctions.matching import Matching, held_to_points, match_surfaces
 from ..eigenfunctions.pair_memory import BYTES_OF_MAP, require_pair
 from ..eigenfunctions.spectral_shape import spectral_shape
 from .by_faces import map_by_faces
 from .by_number import map_by_number
 from .by_shape import map_by_shape
 from .confidence import SURE
-from .shape_pair import Image, ShapePair
+from .shape_pair import Image, ShapePair, triangle_around
 from .surface_points import SurfacePoints
 
 BY_NUMBER, BY_FACES, BY_SHAPE = "number", "faces", "shape"
@@ -101,7 +102,12 @@ class Correspondence:
 
 @told_if_full
 def correspond(
-    source: Analysis, target: Analysis, *, matching: Matching | None = None, progress: Progress | None = None
+    source: Analysis,
+    target: Analysis,
+    *,
+    matching: Matching | None = None,
+    points: ArrayLike | None = None,
+    progress: Progress | None = None,
 ) -> Correspondence:
     """Find for each vertex of a target the point of the source that it corresponds to.
 
@@ -110,6 +116,9 @@ def correspond(
     source, target : Analysis
     matching : Matching, optional
         Of the two; found now if None.
+    points : (p, 2) int, optional
+        Pairs of vertices, of the source and the target, that belong together; those of the matching if None. They are
+        kept exactly, and what surrounds them follows. The ``warnings`` of the matching name those that contradict it.
     progress : callable, optional
         ``progress(fraction, text)``; may raise `Cancelled`.
 
@@ -121,7 +130,8 @@ def correspond(
     Raises
     ------
     RegistrationError
-        If the matching is for other shapes, or a shape was analyzed shell by shell.
+        If the matching is for other shapes, points are no pairs of vertices of the two that have faces, or a shape was
+        analyzed shell by shell.
 
     References
     ----------
@@ -143,9 +153,12 @@ def correspond(
     shapes = spectral_shape(source.matching_basis), spectral_shape(target.matching_basis)
     if matching is None:
         progress(0.3, "Matching")
-        matching = match_surfaces(source.surface, target.surface, *shapes)
+        matching = match_surfaces(source.surface, target.surface, *shapes, points=points)
+    elif points is not None:
+        matching = held_to_points(matching, points, source.surface, target.surface, *shapes)
     source_shape = shapes[0].mirrored() if matching.mirrored else shapes[0]
     pair = ShapePair(source=source, target=target, source_shape=source_shape, target_shape=shapes[1], matching=matching)
+    _check_points(pair)
     if matching.same_topology:
         return _correspondence(pair, map_by_number(source, target), BY_NUMBER)
     _check_matching(pair)
@@ -161,7 +174,32 @@ def _check_matching(pair: ShapePair) -> None:
         raise RegistrationError("The matching is for other shapes than these two.")
 
 
+def _check_points(pair: ShapePair) -> None:
+    shapes = ("source", pair.source), ("target", pair.target)
+    for (name, analysis), vertices in zip(shapes, pair.matching.points.T, strict=True):
+        faceless = vertices[~np.isin(vertices, analysis.mesh.used)]
+        if len(faceless):
+            raise RegistrationError(f"Vertex {faceless[0]} of the {name} has no face; give another one as a point.")
+
+
+def _with_points_kept(pair: ShapePair, image: Image) -> Image:
+    """Return an image in which the vertices that were given, and their doubles, lie where they were given."""
+    if not len(pair.matching.points):
+        return image
+    place_of_vertex = pair.target.surface.vertex_of_input
+    triangle, corner = triangle_around(pair.source.mesh.triangles, len(pair.source.mesh.vertices))
+    triangles, barycentric = image.points.triangles.copy(), image.points.barycentric.copy()
+    confidence = image.confidence.copy()
+    doubles = [np.flatnonzero(place_of_vertex == place_of_vertex[vertex]) for _, vertex in pair.matching.points]
+    for kept in (doubles, pair.matching.points[:, 1]):
+        for (vertex, _), targets, gap in zip(pair.matching.points, kept, pair.matching.point_gaps, strict=True):
+            triangles[targets], barycentric[targets] = triangle[vertex], np.eye(3)[corner[vertex]]
+            confidence[targets] = 1.0 if gap <= FAR else confidence[targets]
+    return Image(SurfacePoints(triangles, barycentric), image.triangles, confidence)
+
+
 def _correspondence(pair: ShapePair, image: Image, found_by: str) -> Correspondence:
+    image = _with_points_kept(pair, image)
     return Correspondence(
         triangles=image.points.triangles,
         barycentric=image.points.barycentric,

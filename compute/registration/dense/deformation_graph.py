@@ -6,11 +6,12 @@ Sumner, Schmid and Pauly, "Embedded Deformation for Shape Manipulation", SIGGRAP
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
-from ...surface.mesh import Floats, Ints, edges_of
+from ...surface.mesh import Floats, Ints
+from ..eigenfunctions.edge_paths import edge_paths
 from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points
 
 # Nodes that a point follows, and nodes that are searched from at once.
@@ -85,7 +86,7 @@ def _nearest_nodes(shape: SpectralShape, chosen: Ints, reach: float) -> tuple[In
     """Return (n, 4) the nodes nearest to each point along edges, in order, and their distances, infinite beyond."""
     n_points = len(shape.positions)
     followed, distance = np.zeros((n_points, FOLLOWED), dtype=np.int64), np.full((n_points, FOLLOWED), np.inf)
-    paths = _paths(shape)
+    paths = edge_paths(shape)
     for start in range(0, len(chosen), CHUNK):
         lengths = dijkstra(paths, directed=False, indices=chosen[start : start + CHUNK], limit=reach).T
         node = np.broadcast_to(start + np.arange(lengths.shape[1]), lengths.shape)
@@ -94,14 +95,6 @@ def _nearest_nodes(shape: SpectralShape, chosen: Ints, reach: float) -> tuple[In
         distance, followed = np.take_along_axis(distance, best, 1), np.take_along_axis(node, best, 1)
     order = distance.argsort(axis=1, kind="stable")
     return np.take_along_axis(followed, order, 1), np.take_along_axis(distance, order, 1)
-
-
-def _paths(shape: SpectralShape) -> csr_array:
-    ends = edges_of(shape.triangles, len(shape.positions)).vertices
-    lengths = np.linalg.norm(shape.positions[ends[:, 0]] - shape.positions[ends[:, 1]], axis=1)
-    n = len(shape.positions)
-    # An edge without length would be none for the search.
-    return coo_array((np.maximum(lengths, 1e-12), (ends[:, 0], ends[:, 1])), shape=(n, n)).tocsr()
 
 
 def _node_pairs(followed: Ints, weights: Floats, n_nodes: int) -> Ints:

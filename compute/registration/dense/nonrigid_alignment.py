@@ -30,6 +30,8 @@ TURN = 0.05
 WRONG_SIDE = 0.03
 # How much a distance along the surface counts, compared with one along the normal.
 SLIDING = 0.05
+# How much the distance of a point from the place that was given for it counts, as a share of all samples.
+PINNED = 0.05
 # Keeps nodes that nothing holds.
 DAMPING = 1e-6
 
@@ -80,6 +82,17 @@ class ClosestPoints:
 
 
 @dataclass(frozen=True, eq=False)
+class Pins:
+    """Points of a graph (p,) whose places (p, 3) are given."""
+
+    points: Ints
+    places: Floats
+
+
+NO_PINS = Pins(np.empty(0, dtype=np.int64), np.empty((0, 3)))
+
+
+@dataclass(frozen=True, eq=False)
 class Samples:
     """Points of a graph that are laid onto a surface.
 
@@ -107,6 +120,7 @@ def aligned(
     samples: Samples,
     target: SpectralShape,
     is_inner: Bools,
+    pins: Pins = NO_PINS,
     progress: Progress = silent,
 ) -> Motion:
     """Return the motion that lays a graph onto a surface.
@@ -121,6 +135,7 @@ def aligned(
         The surface, of T triangles.
     is_inner : (T,) bool
         Its inner walls.
+    pins : Pins, optional
     progress : Progress, optional
         Told before each round; may raise `Cancelled`.
     """
@@ -131,7 +146,7 @@ def aligned(
         points, distance = tree.nearest(places, normals, CANDIDATES, samples.is_inner)
         has_partner = is_inner[points.triangles] == samples.is_inner
         closest = _closest_points(samples.points, normals, points, np.where(has_partner, distance, np.inf), target)
-        motion = gauss_newton_step(graph, motion, closest, weights)
+        motion = gauss_newton_step(graph, motion, closest, weights, pins)
     return motion
 
 
@@ -145,9 +160,11 @@ def _closest_points(
     return ClosestPoints(samples, points.blend(target.positions, target.triangles), normals, weights)
 
 
-def gauss_newton_step(graph: DeformationGraph, motion: Motion, closest: ClosestPoints, weights: Round) -> Motion:
-    """Return the motion after one Gauss-Newton step towards the closest points, as rigidly as the weights want it."""
-    rows = [_distances(graph, motion, closest), _disagreements(graph, motion, weights)]
+def gauss_newton_step(
+    graph: DeformationGraph, motion: Motion, closest: ClosestPoints, weights: Round, pins: Pins = NO_PINS
+) -> Motion:
+    """Return the motion after one Gauss-Newton step towards closest points and pins, as rigidly as the weights want."""
+    rows = [_distances(graph, motion, closest), _disagreements(graph, motion, weights), _pulls(graph, motion, pins)]
     jacobian = _stacked([matrix for matrix, _ in rows])
     residual = np.concatenate([values for _, values in rows])
     n = jacobian.shape[1]
@@ -173,7 +190,20 @@ def _distances(graph: DeformationGraph, motion: Motion, closest: ClosestPoints) 
     away = warped(graph, motion, closest.chosen) - closest.places
     axes = [closest.normals] + [np.broadcast_to(SLIDING * axis, away.shape) for axis in np.eye(3)]
     directions = np.concatenate(axes) * np.tile(np.sqrt(closest.weights), 4)[:, None]
-    chosen = np.tile(closest.chosen, 4)
+    return _along(graph, motion, np.tile(closest.chosen, 4), directions, np.tile(away, (4, 1)))
+
+
+def _pulls(graph: DeformationGraph, motion: Motion, pins: Pins) -> tuple[csr_array, Floats]:
+    """Return derivatives and values of the distances of pinned points from their places, along each axis."""
+    away = warped(graph, motion, pins.points) - pins.places
+    directions = np.repeat(np.sqrt(PINNED) * np.eye(3), len(away), axis=0)
+    return _along(graph, motion, np.tile(pins.points, 3), directions, np.tile(away, (3, 1)))
+
+
+def _along(
+    graph: DeformationGraph, motion: Motion, chosen: Ints, directions: Floats, away: Floats
+) -> tuple[csr_array, Floats]:
+    """Return derivatives and values of how far chosen points are away along directions."""
     followed, weights = graph.followed[chosen], graph.weights[chosen]
     blocks = np.empty((len(chosen), FOLLOWED, 6))
     for place in range(FOLLOWED):
@@ -181,7 +211,7 @@ def _distances(graph: DeformationGraph, motion: Motion, closest: ClosestPoints) 
         arms = np.einsum("nij,nj->ni", motion.rotations[followed[:, place]], arms)
         blocks[:, place, :3] = weights[:, place, None] * np.cross(arms, directions)
         blocks[:, place, 3:] = weights[:, place, None] * directions
-    return _block_rows(blocks, followed, len(graph.nodes)), np.einsum("nj,nj->n", np.tile(away, (4, 1)), directions)
+    return _block_rows(blocks, followed, len(graph.nodes)), np.einsum("nj,nj->n", away, directions)
 
 
 def _disagreements(graph: DeformationGraph, motion: Motion, weights: Round) -> tuple[csr_array, Floats]:

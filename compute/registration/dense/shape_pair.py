@@ -4,12 +4,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ...analysis.analysis import Analysis
 from ...surface.inner_walls import inner_vertices, inner_walls
 from ...surface.mesh import Bools, Floats, Ints
+from ..eigenfunctions.given_points import PointPairs, point_pairs
 from ..eigenfunctions.matching import Matching
+from ..eigenfunctions.shape_points import ShapePoints, shape_points
 from ..eigenfunctions.spectral_shape import SpectralShape, farthest_points
 from .point_map import DENSE_SAMPLES, refined_functional_map
 from .surface_points import SurfacePoints
@@ -32,22 +33,6 @@ class Image:
     points: SurfacePoints
     triangles: Ints
     confidence: Floats
-
-
-@dataclass(frozen=True, eq=False)
-class ShapePoints:
-    """The point of a spectral shape for each of the V vertices of the input.
-
-    Attributes
-    ----------
-    point : (V,) int64
-        For vertices that are not on the shape that of the nearest vertex in space that is.
-    is_analyzed : (V,) bool
-        Whether the vertex is on the shape.
-    """
-
-    point: Ints
-    is_analyzed: Bools
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,14 +78,21 @@ class ShapePair:
         return farthest_points(self.source_shape.positions, DENSE_SAMPLES)
 
     @cached_property
+    def given(self) -> PointPairs:
+        """The points that were given."""
+        shapes = self.source_shape, self.target_shape
+        return point_pairs(self.matching.points, self.source.surface, self.target.surface, *shapes)
+
+    @cached_property
     def functional_map(self) -> Floats:
         """(kt, ks) the matching grown to all functions, target x source, the constant included."""
-        return refined_functional_map(self.source_shape, self.target_shape, self.matching, self.samples)
+        shapes = self.source_shape, self.target_shape
+        return refined_functional_map(*shapes, self.matching, self.samples, pairs=self.given)
 
     @cached_property
     def target_points(self) -> ShapePoints:
         """The target's points for the vertices of its input."""
-        return shape_points(self.target, self.target_shape)
+        return shape_points(self.target.mesh.vertices, self.target.surface, self.target_shape)
 
     @cached_property
     def source_walls(self) -> Walls:
@@ -123,27 +115,6 @@ def _walls(analysis: Analysis, shape: SpectralShape) -> Walls:
     of_surface = inner_walls(analysis.surface.mesh)
     triangles = of_surface[analysis.surface.triangle_of_input[shape.input_triangle]]
     return Walls(of_surface, triangles, inner_vertices(shape.triangles, triangles, len(shape.positions)))
-
-
-def shape_points(analysis: Analysis, shape: SpectralShape) -> ShapePoints:
-    """Return the points of a spectral shape of an analysis for the vertices of its input."""
-    vertices = analysis.mesh.vertices
-    point = np.full(len(vertices), -1)
-    is_vertex = shape.node < len(vertices)
-    point[shape.node[is_vertex]] = np.flatnonzero(is_vertex)
-    point = point[analysis.surface.vertex_of_input]
-    is_analyzed = point >= 0
-    return ShapePoints(point[nearest_known(vertices, is_analyzed)], is_analyzed)
-
-
-def nearest_known(vertices: Floats, is_known: Bools) -> Ints:
-    """Return for each vertex (V, 3) itself or, if it is not known, the nearest in space that is."""
-    nearest = np.arange(len(vertices))
-    lone = np.flatnonzero(~is_known)
-    if len(lone):
-        known = np.flatnonzero(is_known)
-        nearest[lone] = known[cKDTree(vertices[known]).query(vertices[lone])[1]]
-    return nearest
 
 
 def triangle_around(triangles: Ints, n_vertices: int) -> tuple[Ints, Ints]:

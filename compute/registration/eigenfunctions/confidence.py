@@ -5,15 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...surface.mesh import Floats
-from .map_scoring import Candidate
+from .map_scoring import LEAST_COST, Candidate
 
 # Log odds of one map against another: for each factor e that it costs less, and for fine curvature that agrees better.
 # Fitted, like the cost below, to pairs whose truth is known (docs/registration.md, "Confidence").
 COST_WEIGHT, CURVATURE_WEIGHT = 2.5, 15.0
 # Cost at which it is as likely that no map is right as that the best is.
 DOUBTFUL_COST = 1e-5
-# Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
-LEAST_COST = 2e-9
 # Curvature that agrees better than this says nothing: so it does over the right map between other triangulations.
 FULL_AGREEMENT = 0.9
 

@@ -61,10 +61,24 @@ class Effort:
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """The eigenvalues and moments of a shape, without the constant: all that hypotheses are made of."""
+    """The eigenvalues and moments of a shape, without the constant: all that hypotheses are made of.
+
+    Attributes
+    ----------
+    values : (K,) float64
+    moments : Moments
+    marks : (p, K) float64
+        Functions at the points that are to go to those of the same row of the other shape.
+    """
 
     values: Floats
     moments: Moments
+    marks: Floats
+
+    def damped_marks(self, n_functions: int) -> Floats:
+        """Return (p, n) the marks in the space where distances are commute times, at norm 1."""
+        scaled = self.marks[:, :n_functions] / np.sqrt(self.values[:n_functions])
+        return scaled / max(float(np.linalg.norm(scaled)), np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,19 +91,22 @@ class Hypotheses:
         Orthogonal, target x source.
     symmetric, alternating : (h,) float64
         Agreement of the two kinds of moment tensors, 1 at best.
+    marks : (h,) float64
+        Agreement of the marks, 1 at best; 0 if there are none.
     """
 
     maps: Floats
     symmetric: Floats
     alternating: Floats
+    marks: Floats
 
     def __len__(self) -> int:
         return len(self.maps)
 
     @property
     def total(self) -> Floats:
-        """(h,) both agreements together, 2 at best."""
-        return self.symmetric + self.alternating
+        """(h,) all agreements together, 2 at best without marks."""
+        return self.symmetric + self.alternating + self.marks
 
     def best(self, n_wanted: int) -> "Hypotheses":
         """Return the first few."""
@@ -97,13 +114,14 @@ class Hypotheses:
 
     def take(self, chosen: Ints) -> "Hypotheses":
         """Return some of them, in the order given."""
-        return Hypotheses(self.maps[chosen], self.symmetric[chosen], self.alternating[chosen])
+        return Hypotheses(self.maps[chosen], self.symmetric[chosen], self.alternating[chosen], self.marks[chosen])
 
 
-def spectrum_of(shape: SpectralShape) -> Spectrum:
-    """Return the part of a shape that hypotheses are made of."""
+def spectrum_of(shape: SpectralShape, marked: Ints | None = None) -> Spectrum:
+    """Return the part of a shape that hypotheses are made of, with marks at some of its points."""
     moments = shape.moments
-    return Spectrum(shape.values[1 : 1 + len(moments.symmetric)], moments)
+    first = slice(1, 1 + len(moments.symmetric))
+    return Spectrum(shape.values[first], moments, shape.functions[[] if marked is None else marked, first])
 
 
 def find_hypotheses(
@@ -146,6 +164,8 @@ class _Level:
         self.target_values = target.values[: n_functions + WINDOW]
         self.source_moments = source.moments.damped(self.source_values)
         self.target_moments = target.moments.damped(self.target_values)
+        self.source_marks = source.damped_marks(n_functions)
+        self.target_marks = target.damped_marks(n_functions + WINDOW)
 
 
 def _beam(
@@ -160,16 +180,16 @@ def _beam(
     ``known`` is a map of the first functions that is not to be touched any more.
     """
     n_known = 0 if known is None else len(known)
-    moments = level.source_moments
+    moments, marks = level.source_moments, level.source_marks
     if known is not None:
         rotation = np.eye(level.n_functions)
         rotation[:n_known, :n_known] = known
-        moments = moments.rotated(rotation)
+        moments, marks = moments.rotated(rotation), marks @ rotation.T
     places, sign = np.arange(n_known)[None], np.ones((1, n_known))
     for function in range(n_known, level.n_functions):
         progress((function - n_known) / (level.n_functions - n_known), SEARCHING)
         places, sign = _branch(places, sign, len(level.target_values), signs.get(function))
-        order = np.argsort(-evened(_score(places, sign, level, moments)), kind="stable")[:width]
+        order = np.argsort(-evened(_score(places, sign, level, moments, marks)), kind="stable")[:width]
         places, sign = places[order], sign[order]
     return places, sign
 
@@ -188,8 +208,8 @@ def _branch(places: Ints, sign: Floats, n_places: int, given_sign: int | None) -
     return longer[is_free], signed[is_free]
 
 
-def _score(places: Ints, sign: Floats, level: _Level, moments: Moments) -> Floats:
-    """Return (b,) the agreement of the moments and eigenvalues under assignments; 2 is best."""
+def _score(places: Ints, sign: Floats, level: _Level, moments: Moments, marks: Floats) -> Floats:
+    """Return (b,) the agreement of the moments, eigenvalues and marks under assignments; 2 is best without marks."""
     n = places.shape[1]
     assigned = places[:, :, None, None], places[:, None, :, None], places[:, None, None, :]
     cube = sign[:, :, None, None] * sign[:, None, :, None] * sign[:, None, None, :]
@@ -200,6 +220,7 @@ def _score(places: Ints, sign: Floats, level: _Level, moments: Moments) -> Float
     ):
         total += _similarity(source[:n, :n, :n], target[assigned] * cube)
     stretch = np.abs(np.log(level.source_values[:n]) - np.log(level.target_values)[places])
+    total += np.einsum("pk,pbk,bk->b", marks[:, :n], level.target_marks[:, places], sign)
     return total - stretch.mean(axis=1)
 
 
@@ -230,13 +251,16 @@ def _polish(maps: Floats, source: Spectrum, target: Spectrum, progress: Progress
     target_moments = target.moments.damped(target.values[:level])
     ratio = np.log(source.values[:level])[None, :] - np.log(target.values[:level])[:, None]
     weight = np.exp(-((ratio / MIXING) ** 2))
+    source_marks, target_marks = source.damped_marks(level), target.damped_marks(level)
+    pull = target_marks.T @ source_marks
     for done in range(POLISHING_ROUNDS):
         progress(done / POLISHING_ROUNDS, SEARCHING)
         gradient = agreement_gradient(maps, source_moments.symmetric, target_moments.symmetric)
         gradient += agreement_gradient(maps, source_moments.alternating, target_moments.alternating)
-        maps = nearest_orthogonal((gradient + INERTIA / np.sqrt(level) * maps) * weight)
+        maps = nearest_orthogonal((gradient + pull + INERTIA / np.sqrt(level) * maps) * weight)
     symmetric = agreement(maps, source_moments.symmetric, target_moments.symmetric)
-    return Hypotheses(maps, symmetric, agreement(maps, source_moments.alternating, target_moments.alternating))
+    alternating = agreement(maps, source_moments.alternating, target_moments.alternating)
+    return Hypotheses(maps, symmetric, alternating, (maps * pull).sum(axis=(1, 2)))
 
 
 def _distinct(maps: Floats, order: Ints, n_wanted: int) -> Ints:

@@ -18,6 +18,8 @@ from .zoomout import MATCHING_SIZES, nearest_points, sample_functions, with_cons
 # Two candidates are one if their maps of the first functions differ by less, relative to the identity's norm.
 SAME_MAP = 0.3
 COMPARED_FUNCTIONS = 10
+# Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
+LEAST_COST = 2e-9
 # Neighbouring points that land more than this many times farther apart are torn from each other.
 TORN = 3.0
 # What no map does without: at 1000 samples single points near thin features always are.
@@ -53,6 +55,8 @@ class Candidate:
         are blind.
     tearing : float
         Share of neighbouring points that are torn apart, from 0 to 1; swapped arms on the right body show here.
+    handicap : float
+        Factor of the cost, greater the farther the map is off given points.
     """
 
     start: Floats
@@ -64,13 +68,14 @@ class Candidate:
     orientation: float
     curvature: float
     tearing: float
+    handicap: float = 1.0
 
     @cached_property
     def cost(self) -> float:
         """Small for good maps; the factors are what separates right from wrong on posed characters."""
         moments = (1.02 - self.symmetric) * (1.02 - self.alternating)
         geometry = (2 - self.orientation) * (1.05 - self.curvature) * (USUAL_TEARING + self.tearing)
-        return self.commutation * moments * geometry
+        return self.commutation * moments * geometry * self.handicap + LEAST_COST * (self.handicap - 1)
 
     @property
     def is_torn(self) -> bool:

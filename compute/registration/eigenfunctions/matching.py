@@ -1,10 +1,11 @@
 """Matching: order, sign, mixing and handedness of the eigenfunctions of two shapes, with nothing to click."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...analysis.analysis import Analysis
 from ...errors import RegistrationError
@@ -14,12 +15,13 @@ from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from ...surface.ties import evened
 from .confidence import evidence_of, probabilities
+from .given_points import PointFit, checked_points, point_pairs, point_warnings, relative_to, trust_in
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, distinct_candidates, ranked
 from .pair_memory import require_pair
 from .self_maps import find_rivals
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
-from .zoomout import MATCHING_SIZES, rounded
+from .zoomout import MATCHING_SIZES, rounded, with_constant
 
 # Widths of the search; the second effort is made only where the first leaves doubt.
 EFFORTS = (Effort(), Effort(n_seeds=30, n_branches=2, n_kept=12, n_refined=10))
@@ -54,6 +56,11 @@ class Matching:
         Agreement of the moment tensors, 1 at best.
     is_consistent : bool
         False where it contradicts the matchings of other shapes that were registered with these.
+    points : (p, 2) int64
+        Pairs of vertices, of the source and the target, that were given.
+    point_gaps : (p,) float64
+        Length, in units of the root of the area, from the source's vertex of each pair to where the map of the
+        functions puts the target's. Dense maps put it where it was given.
 
     Examples
     --------
@@ -74,6 +81,13 @@ class Matching:
     symmetric: float = 1.0
     alternating: float = 1.0
     is_consistent: bool = True
+    points: Ints = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
+    point_gaps: Floats = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences about given points that contradict the map."""
+        return point_warnings(self.point_gaps)
 
     @cached_property
     def order(self) -> Ints:
@@ -91,6 +105,7 @@ def match(
     source: Analysis,
     target: Analysis,
     *,
+    points: ArrayLike | None = None,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
     progress: Progress | None = None,
@@ -100,6 +115,10 @@ def match(
     Parameters
     ----------
     source, target : Analysis
+    points : (p, 2) int, optional
+        Pairs of vertices, of the source and the target, that belong together. They decide where a symmetry leaves
+        several matchings. One that contradicts everything else is told in the matching's ``warnings``, and its
+        confidence is low.
     flips : mapping of int to +1 or -1, optional
         The sign that a function of the source (from 1) is to have, whatever fits better; all others follow. Functions
         point where those of ``eigenbasis`` do.
@@ -116,7 +135,8 @@ def match(
     Raises
     ------
     RegistrationError
-        If a sign is given for a function that has none, or is not +1 or -1, or a shape was analyzed shell by shell.
+        If points are no pairs of vertices of the two, or one is in two pairs; if a sign is given for a function that
+        has none, or is not +1 or -1; or if a shape was analyzed shell by shell.
 
     References
     ----------
@@ -137,7 +157,8 @@ def match(
     progress = rising(progress or silent)
     shapes = matching_shape(source, section(progress, 0, 0.3)), matching_shape(target, section(progress, 0.3, 0.6))
     rest = section(progress, 0.6, 1)
-    return match_surfaces(source.surface, target.surface, *shapes, flips=flips, mirrored=mirrored, progress=rest)
+    surfaces = source.surface, target.surface
+    return match_surfaces(*surfaces, *shapes, points=points, flips=flips, mirrored=mirrored, progress=rest)
 
 
 @told_if_full
@@ -154,15 +175,22 @@ def match_surfaces(
     source_shape: SpectralShape,
     target_shape: SpectralShape,
     *,
+    points: ArrayLike | None = None,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
     progress: Progress = silent,
 ) -> Matching:
     """Match two shapes as `match` does, from their surfaces and the spectral shapes of these."""
     signs = _checked_signs(flips or {})
+    vertices = checked_points(points, len(source.vertex_of_input), len(target.vertex_of_input))
+    pairs = point_pairs(vertices, source, target, source_shape, target_shape)
+    fit = PointFit(pairs, source_shape, target_shape) if len(vertices) else None
     if not signs and not mirrored and share_topology(source, target):
-        return match_by_number(source_shape, target_shape)
-    return match_shapes(source_shape, target_shape, signs, mirrored=mirrored, progress=progress)
+        by_number = match_by_number(source_shape, target_shape)
+        held = by_number if fit is None else _held_to_points(by_number, fit)
+        if not held.warnings:
+            return held
+    return match_shapes(source_shape, target_shape, signs, fit=fit, mirrored=mirrored, progress=progress)
 
 
 def share_topology(source: Surface, target: Surface) -> bool:
@@ -183,66 +211,124 @@ def match_shapes(
     target: SpectralShape,
     signs: Mapping[int, int] | None = None,
     *,
+    fit: PointFit | None = None,
     mirrored: bool = False,
     progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
     seen = source.mirrored() if mirrored else source
+    searching, fitting = section(progress, 0, 1 if fit is None else 0.75), section(progress, 0.75, 1)
     scorer = MapScorer(seen, target)
+    rivals: list[Candidate] = []
     if signs:
-        weighed = _weighed_with_signs(seen, target, scorer, signs, progress)
+        candidates, rivals = _found_with_signs(seen, target, scorer, signs, searching)
     else:
         # A shape's mirror image fits itself in the same ways as the shape.
-        weighed = _weighed_candidates(seen, target, scorer, (source.self_maps, target.self_maps), progress)
+        candidates = _found(seen, target, scorer, (source.self_maps, target.self_maps), searching)
+    if fit is not None:
+        candidates, rivals = _drawn_to_points(fit, candidates, rivals, scorer, signs or {}, fitting)
+    weighed = _weighed(candidates, rivals, scorer)
     best, *others = (_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed)
-    return replace(best, alternatives=tuple(others[:MAX_ALTERNATIVES]))
+    matching = replace(best, alternatives=tuple(others[:MAX_ALTERNATIVES]))
+    return matching if fit is None else _held_to_points(matching, fit)
 
 
-def _weighed_candidates(
+def _found(
     source: SpectralShape,
     target: SpectralShape,
     scorer: MapScorer,
     self_maps: tuple[list[Floats], list[Floats]],
     progress: Progress,
-) -> list[tuple[Candidate, float]]:
-    """Return different candidates with their probabilities; the search is widened until the best of them is sure."""
+) -> list[Candidate]:
+    """Return scored hypotheses with their rivals, best first; the search is widened until the likeliest is sure."""
     spectra = spectrum_of(source), spectrum_of(target)
     candidates: list[Candidate] = []
-    weighed: list[tuple[Candidate, float]] = []
     for number, effort in enumerate(EFFORTS):
         searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
         hypotheses = find_hypotheses(*spectra, effort, progress=searching)
         found, rivalling = _halves(refining)
         candidates += scorer.score(hypotheses.best(effort.n_refined).maps, progress=found)
         rivals = find_rivals(ranked(candidates), *self_maps)
-        candidates += scorer.score(rivals, progress=rivalling)
-        weighed = _weighed(distinct_candidates(ranked(candidates), MAX_WEIGHED), scorer)
-        if weighed[0][1] >= SURE:
+        candidates = ranked(candidates + scorer.score(rivals, progress=rivalling))
+        if _weighed(candidates, [], scorer)[0][1] >= SURE:
             break
-    return weighed
+    return candidates
 
 
-def _weighed_with_signs(
+def _found_with_signs(
     source: SpectralShape, target: SpectralShape, scorer: MapScorer, signs: Mapping[int, int], progress: Progress
-) -> list[tuple[Candidate, float]]:
-    """Return different candidates that keep given signs, with their probabilities among those that need not."""
+) -> tuple[list[Candidate], list[Candidate]]:
+    """Return scored hypotheses that keep given signs, best first, and the best that do not need to."""
     keeping, leaving = _halves(progress)
     effort, spectra = EFFORTS[0], (spectrum_of(source), spectrum_of(target))
     scored = []
     for given, (searching, refining) in ((signs, _halves(keeping)), ({}, _halves(leaving))):
         hypotheses = find_hypotheses(*spectra, effort, given, searching).best(effort.n_refined)
         scored.append(ranked(scorer.score(hypotheses.maps, given, refining)))
-    kept = distinct_candidates(scored[0], 1 + MAX_ALTERNATIVES)
-    weighed = _weighed(distinct_candidates(kept + scored[1], len(kept) + MAX_WEIGHED), scorer)
-    return [(candidate, probability) for candidate, probability in weighed if candidate in kept]
+    return scored[0], scored[1]
 
 
-def _weighed(candidates: Sequence[Candidate], scorer: MapScorer) -> list[tuple[Candidate, float]]:
-    """Return candidates with their probabilities, the likeliest first."""
-    evidence = [evidence_of(candidate, scorer.fine_curvature(candidate)) for candidate in candidates]
-    likely = probabilities(candidates, evidence)
+def _drawn_to_points(
+    fit: PointFit,
+    candidates: list[Candidate],
+    rivals: list[Candidate],
+    scorer: MapScorer,
+    signs: Mapping[int, int],
+    progress: Progress,
+) -> tuple[list[Candidate], list[Candidate]]:
+    """Return candidates, best first, and rivals, of which those that miss points lose.
+
+    While none is sure to meet them, there are more that the points draw the search to.
+    """
+    spectra = spectrum_of(fit.source, fit.pairs.source), spectrum_of(fit.target, fit.pairs.target)
+    candidates, rivals = ranked(fit.handicapped(candidates)), fit.handicapped(rivals)
+    for number, effort in enumerate(EFFORTS):
+        compared = relative_to(candidates[0], candidates), relative_to(candidates[0], rivals)
+        best, likely = _weighed(*compared, scorer)[0]
+        if likely * trust_in(fit.gaps(best.functional_map)) >= SURE:
+            break
+        searching, refining = _halves(section(progress, number / len(EFFORTS), (number + 1) / len(EFFORTS)))
+        hypotheses = find_hypotheses(*spectra, effort, signs, searching).best(effort.n_refined)
+        drawn = fit.handicapped(scorer.score(hypotheses.maps, signs, refining))
+        candidates, rivals = ranked(candidates + drawn), rivals + drawn
+    return relative_to(candidates[0], candidates), relative_to(candidates[0], rivals)
+
+
+def _weighed(
+    candidates: Sequence[Candidate], rivals: Sequence[Candidate], scorer: MapScorer
+) -> list[tuple[Candidate, float]]:
+    """Return different ones of candidates, given best first, with their probabilities among rivals, likeliest first."""
+    own = distinct_candidates(candidates, MAX_WEIGHED)
+    compared = distinct_candidates([*own, *ranked(rivals)], len(own) + MAX_WEIGHED)
+    evidence = [evidence_of(candidate, scorer.fine_curvature(candidate)) for candidate in compared]
+    likely = probabilities(compared, evidence)[: len(own)]
     order = np.argsort(-evened(likely), kind="stable")
-    return [(candidates[number], float(likely[number])) for number in order.tolist()]
+    return [(own[number], float(likely[number])) for number in order.tolist()]
+
+
+def held_to_points(
+    matching: Matching,
+    points: ArrayLike,
+    source: Surface,
+    target: Surface,
+    source_shape: SpectralShape,
+    target_shape: SpectralShape,
+) -> Matching:
+    """Return a matching that remembers points, and is less sure the farther from them it is."""
+    vertices = checked_points(points, len(source.vertex_of_input), len(target.vertex_of_input))
+    pairs = point_pairs(vertices, source, target, source_shape, target_shape)
+    return _held_to_points(matching, PointFit(pairs, source_shape, target_shape))
+
+
+def _held_to_points(matching: Matching, fit: PointFit) -> Matching:
+    gaps = fit.gaps_by_number() if matching.same_topology else fit.gaps(with_constant(matching.map))
+    return replace(
+        matching,
+        confidence=matching.confidence * trust_in(gaps),
+        alternatives=tuple(_held_to_points(other, fit) for other in matching.alternatives),
+        points=fit.pairs.vertices,
+        point_gaps=gaps,
+    )
 
 
 def _halves(progress: Progress) -> tuple[Progress, Progress]:

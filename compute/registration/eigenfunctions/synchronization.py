@@ -16,8 +16,8 @@ import numpy as np
 from ...progress import Progress, section, silent
 from ...surface.mesh import Floats
 from ...surface.ties import first_least
-from .confidence import COST_WEIGHT, LEAST_COST, evidence_of, fit_of, probabilities
-from .map_scoring import SAME_MAP, Candidate, MapScorer, distance_of, distinct_candidates, ranked
+from .confidence import COST_WEIGHT, evidence_of, fit_of, probabilities
+from .map_scoring import LEAST_COST, SAME_MAP, Candidate, MapScorer, distance_of, distinct_candidates, ranked
 from .matching import FLIPPABLE, MAX_ALTERNATIVES, Matching
 from .spectral_shape import SpectralShape
 from .zoomout import with_constant
@@ -63,7 +63,7 @@ def synchronized(
     targets : sequence of SpectralShape
         At least two.
     matchings : sequence of Matching
-        Of the reference (source) with each target by itself. Those by numbers stay as they are.
+        Of the reference (source) with each target by itself. Those by numbers or with given points stay as they are.
     links : dict of (int, int) to Matching
         Of the targets of `pairs_in_row`, in that order.
     progress : Progress, optional
@@ -90,6 +90,7 @@ class _Pair:
         self._size = min(FLIPPABLE, source.n_functions - 1, target.n_functions - 1)
         self._evidence: dict[Candidate, float] = {}
         self.matching = matching
+        self.is_given = matching.same_topology or len(matching.points) > 0
         self.candidates: list[Candidate] = []
         for found in (matching, *matching.alternatives):
             self.candidate_of(found.map)
@@ -117,7 +118,7 @@ class _Pair:
 
     def rivals(self) -> list[Candidate]:
         """Return the different maps that may be right, the least costly first."""
-        if self.matching.same_topology:
+        if self.is_given:
             return self.candidates[:1]
         best, *others = distinct_candidates(ranked(self.candidates), MOST_RIVALS)
         dearest = SPREAD * (best.cost + LEAST_COST)
@@ -128,7 +129,7 @@ class _Pair:
         rivals = self.rivals()
         likely = self.likely(rivals)
         best = int(likely.argmax())
-        is_sure = self.matching.same_topology or likely[best] > SURE_OF_ANOTHER
+        is_sure = self.is_given or likely[best] > SURE_OF_ANOTHER
         return bool(is_sure) and distance_of(rivals[best].functional_map, with_constant(functional_map)) > SAME_MAP
 
 
@@ -211,7 +212,7 @@ def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[li
 
 def _with_choice(spoke: _Pair, best: Candidate, margin: float, is_broken: list[bool]) -> Matching:
     """Return the matching of a spoke by one of its candidates; in doubt where more of its cycles break than hold."""
-    if spoke.matching.same_topology:
+    if spoke.is_given:
         return spoke.matching
     is_consistent = 2 * sum(is_broken) <= len(is_broken)
     confidence = fit_of(best) / (1 + float(np.exp(-margin))) / (1 if is_consistent else 2)

@@ -15,6 +15,8 @@ from ...surface.ties import CHOICE
 MATCHING_SIZES = (17, 17, 20, 24, 29, 35, 42, 50)
 # Query points that are compared with all others at once, which bounds the memory.
 CHUNK = 2000
+# A point whose partner is known counts as so many samples.
+POINT_SAMPLES = 10.0
 # The largest cost of an assignment as a whole number: sums of thousands of such are still exact.
 WHOLE = 2.0**40
 
@@ -26,17 +28,22 @@ class SampledFunctions:
     Attributes
     ----------
     functions : (s, k) float64
-    fits : dict of int to (size, s) float64
-        Gives the coefficients of the first functions from values at the samples.
+    given : (p, k) float64
+        At points whose partners are known, times how many samples each counts as.
+    fits : dict of int to (size, s + p) float64
+        Gives the coefficients of the first functions from values at the samples and points.
     """
 
     functions: Floats
+    given: Floats
     fits: dict[int, Floats]
 
 
-def sample_functions(functions: Floats, sizes: Sequence[int]) -> SampledFunctions:
-    """Prepare functions at samples for maps of some sizes."""
-    return SampledFunctions(functions, {size: np.linalg.pinv(functions[:, :size]) for size in sorted(set(sizes))})
+def sample_functions(functions: Floats, sizes: Sequence[int], given: Floats | None = None) -> SampledFunctions:
+    """Prepare functions at samples, and (p, k) at points whose partners are known, for maps of some sizes."""
+    given = functions[:0] if given is None else POINT_SAMPLES * given
+    rows = np.vstack([functions, given])
+    return SampledFunctions(functions, given, {size: np.linalg.pinv(rows[:, :size]) for size in sorted(set(sizes))})
 
 
 def zoom_out(
@@ -75,7 +82,7 @@ def zoom_out(
 
 def _step(functional_map: Floats, source: SampledFunctions, target: SampledFunctions, size: int) -> Floats:
     matched = source.functions[nearest_points(functional_map, source.functions, target.functions)]
-    return target.fits[size] @ matched[:, :size]
+    return target.fits[size] @ np.vstack([matched, source.given])[:, :size]
 
 
 def nearest_points(functional_map: Floats, source: Floats, target: Floats, progress: Progress = silent) -> Ints:

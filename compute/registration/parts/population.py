@@ -7,6 +7,7 @@ from functools import partial
 from typing import Protocol, TypeAlias, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...analysis.analysis import Analysis
 from ...choices import FEATURES
@@ -16,6 +17,7 @@ from ...progress import Progress, rising, section, silent
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.point_map import point_map
+from ..eigenfunctions.given_points import point_pairs
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
 from ..eigenfunctions.pair_memory import require_pair
 from ..eigenfunctions.synchronization import pairs_in_row, synchronized
@@ -72,6 +74,7 @@ def register(
     *,
     reference: int = 0,
     level: int | None = None,
+    points: Sequence[ArrayLike | None] | None = None,
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> list[Segmentation]:
@@ -86,6 +89,9 @@ def register(
         Number of the shape that gives the parts, from 0.
     level : int, optional
         Level of the reference whose features are the parts; its default level if None.
+    points : sequence of (p, 2) int, optional
+        For each of the other shapes, in their order, pairs of vertices that belong together: of the reference and of
+        that shape; None for those without.
     executor : concurrent.futures.Executor, optional
         Runs the pairs: threads, processes or a cluster that offers this interface.
     progress : Progress, optional
@@ -100,7 +106,7 @@ def register(
     Raises
     ------
     RegistrationError
-        If there is no such shape.
+        If there is no such shape, or the points are not pairs of vertices for each of the others.
     LevelError
         If the reference has no such level.
 
@@ -125,8 +131,11 @@ def register(
     reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
     prepared = prepare_reference(analyses[reference], reference_segmentation)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
+    given = [None] * len(others) if points is None else list(points)
+    if len(given) != len(others):
+        raise RegistrationError(f"There are points for {len(given)} shapes, and {len(others)} to register.")
     run = _run_serially if executor is None else partial(_run_in_executor, executor)
-    results = _register_all(prepared, others, run, progress)
+    results = _register_all(prepared, others, given, run, progress)
     segmentations = [result.segmentation for result in results]
     segmentations.insert(reference, reference_segmentation)
     return with_disjoint_labels(segmentations, reference)
@@ -144,9 +153,11 @@ def with_parts(shape: Divisible, labels: Ints, parts: Parts, level: int) -> Refe
     return Reference(shape, reference_parts(labels, parts, level, shape))
 
 
-def register_one(reference: Reference, target: Analysis, progress: Progress = silent) -> Registered:
+def register_one(
+    reference: Reference, target: Analysis, points: ArrayLike | None = None, progress: Progress = silent
+) -> Registered:
     """Match one shape with the reference and divide it into the same parts."""
-    shape, matching = _match_one(reference, target, section(progress, 0, 0.8))
+    shape, matching = _match_one(reference, target, points, section(progress, 0, 0.8))
     return _divide(reference, shape, matching, section(progress, 0.8, 1))
 
 
@@ -155,6 +166,7 @@ def match_divisible(
     reference: Reference,
     target: Divisible,
     *,
+    points: ArrayLike | None = None,
     flips: Mapping[int, int] | None = None,
     mirrored: bool = False,
     progress: Progress = silent,
@@ -162,7 +174,7 @@ def match_divisible(
     """Match the reference (source) with a target, as `match` does."""
     surfaces = reference.shape.surface, target.surface
     shapes = reference.shape.shape, target.shape
-    return match_surfaces(*surfaces, *shapes, flips=flips, mirrored=mirrored, progress=progress)
+    return match_surfaces(*surfaces, *shapes, points=points, flips=flips, mirrored=mirrored, progress=progress)
 
 
 @told_if_full
@@ -185,7 +197,8 @@ def agreed_matchings(
     reference : Reference
     targets : sequence of Divisible
     matchings : sequence of Matching
-        Of the reference with each target by itself. A single one stays as it is, and so do those by numbers.
+        Of the reference with each target by itself. A single one stays as it is, and so do those by numbers or with
+        points that were given.
     match_pairs : callable
         ``match_pairs(pairs, progress)`` matches pairs of targets, given by their numbers, as `match_members` does.
     progress : Progress, optional
@@ -214,7 +227,8 @@ def label_matched(
         May raise `Cancelled`.
     """
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
-    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8))
+    pairs = point_pairs(matching.points, reference.shape.surface, target.surface, source, target.shape)
+    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8), pairs)
     progress(0.8, "Carrying the parts over")
     cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
@@ -255,10 +269,15 @@ class _Runner(Protocol):
 
 
 def _register_all(
-    reference: Reference, targets: Sequence[Analysis], run: _Runner, progress: Progress
+    reference: Reference,
+    targets: Sequence[Analysis],
+    points: Sequence[ArrayLike | None],
+    run: _Runner,
+    progress: Progress,
 ) -> list[Registered]:
     """Match all targets, let the matchings agree, and divide the targets by them."""
-    matched = run(_match_one, [(reference, target) for target in targets], section(progress, 0, 0.5), MATCHED)
+    pairs = [(reference, target, given) for target, given in zip(targets, points, strict=True)]
+    matched = run(_match_one, pairs, section(progress, 0, 0.5), MATCHED)
     shapes = [shape for shape, _ in matched]
 
     def match_pairs(pairs: list[NumberedPair], progress: Progress) -> list[Matching]:
@@ -270,14 +289,16 @@ def _register_all(
     return run(_divide, arguments, section(progress, 0.8, 1), REGISTERED)
 
 
-def _match_one(reference: Reference, target: Analysis, progress: Progress = silent) -> tuple[Divisible, Matching]:
+def _match_one(
+    reference: Reference, target: Analysis, points: ArrayLike | None, progress: Progress = silent
+) -> tuple[Divisible, Matching]:
     shape = divisible(target, matching_shape(target, section(progress, 0, 0.5)))
-    return shape, match_divisible(reference, shape, progress=section(progress, 0.5, 1))
+    return shape, match_divisible(reference, shape, points=points, progress=section(progress, 0.5, 1))
 
 
 def _divide(reference: Reference, shape: Divisible, matching: Matching, progress: Progress = silent) -> Registered:
     labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, progress)
-    warnings = () if matching.is_consistent else (CONTRADICTS,)
+    warnings = (*(() if matching.is_consistent else (CONTRADICTS,)), *matching.warnings)
     return Registered(Segmentation(labels.faces, labels.parts, labels.level, warnings), matching)
 
 

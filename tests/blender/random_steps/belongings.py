@@ -22,7 +22,7 @@ SETTINGS = ("eigenparts", "eigenparts_skeleton", "eigenparts_transfer")
 MARKS = ("layer sharp_", "layer .select_", "layer .hide_", "layer .uv", "layer material_index")
 GONE = "gone"
 # Custom properties of Blender's own.
-NOT_KEPT = (*SETTINGS, "cycles")
+NOT_KEPT = (*SETTINGS, "eigenparts_points", "cycles")
 
 
 def belongings() -> dict[Place, object]:
@@ -179,7 +179,11 @@ def _of_material(material: bpy.types.Material) -> dict[str, object]:
 
 
 def _of_scene(scene: bpy.types.Scene) -> dict[str, object]:
-    return {
+    pairs = [
+        (_name(pair.source), pair.source_vertex, pair.n_source, _name(pair.target), pair.target_vertex, pair.n_target)
+        for pair in scene.eigenparts_points
+    ]
+    return {"eigenparts_points": pairs} | {
         f"{group} {declared.identifier}": plain_setting(getattr(scene, group), declared)
         for group in SETTINGS
         for declared in getattr(scene, group).bl_rna.properties

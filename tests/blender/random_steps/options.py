@@ -15,10 +15,10 @@ LIKELY = {
     "boundary": ["NEUMANN", "NEUMANN", "NEUMANN", "DIRICHLET"],
     "field": ["DIFFUSION", "DIFFUSION", "DIFFUSION", "EIGENFUNCTION", "ATTRIBUTE"],
     **{"attribute": ["heat"], "mask": ["", "", "grip"], "group_names": ["grip"], "object_name": [""]},
-    **{"index": [0], "into": [0]},
+    **{"index": [0], "into": [0], "source": [""], "source_vertex": [0, 1, 5, 9], "target_vertex": [0, 1, 5, 9]},
 }
 # Those that a call without them is about something else.
-ALWAYS = {"order", "part", "into", "attribute", "location"}
+ALWAYS = {"order", "part", "into", "attribute", "location", "target"}
 # From how far above the picked vertex the ray comes, in its own height.
 ABOVE = 10
 

@@ -74,6 +74,10 @@ REACH = {
     ),
     "plot_diagram": Reach(anywhere=("images/*",), makes=("images",)),
     "register_selected": Reach(writes_others=True),
+    **dict.fromkeys(
+        ("add_point_pair", "remove_point_pair", "clear_point_pairs"),
+        Reach(writes_ours=False, anywhere=("scenes/eigenparts_points",)),
+    ),
     "flip_function": Reach(anywhere=("ours",)),
     "next_alternative": Reach(anywhere=("ours",)),
     "transfer": Reach(

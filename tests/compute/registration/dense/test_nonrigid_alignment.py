@@ -8,6 +8,7 @@ from compute.registration.dense.nonrigid_alignment import (
     RELAXATION,
     SLIDING,
     ClosestPoints,
+    Pins,
     Round,
     Samples,
     aligned,
@@ -48,6 +49,21 @@ def test_outer_walls_are_not_drawn_to_inner_ones(shape, graph):
     away = motion_towards(graph, graph.nodes + np.array([0.02, -0.015, 0.01]))
     motion = laid_onto_itself(shape, graph, away, inner_target=True)
     np.testing.assert_allclose(warped(graph, motion), warped(graph, away), atol=1e-9)
+
+
+def test_a_pinned_point_comes_to_its_place_and_takes_its_surroundings_along(shape, graph):
+    """Its place is a little beside where it lies, on the surface."""
+    away = np.linalg.norm(shape.positions - shape.positions[40], axis=1)
+    order = np.argsort(away)
+    place, around = shape.positions[order[6]], order[1:6]
+    samples = Samples(order, shape.normals[order], np.zeros(len(order), dtype=bool))
+    pins = Pins(np.array([40]), place[None])
+    still = motion_towards(graph, graph.nodes)
+    motion = aligned(graph, still, samples, shape, np.zeros(len(shape.triangles), dtype=bool), pins)
+    moved = warped(graph, motion) - shape.positions
+    np.testing.assert_allclose(moved[40], place - shape.positions[40], atol=0.02 * away[order[6]])
+    assert (moved[around] @ moved[40] > 0.2 * moved[40] @ moved[40]).all()
+    assert (np.linalg.norm(moved[away > 10 * away[order[6]]], axis=1) < 0.1 * away[order[6]]).all()
 
 
 def test_distance_along_the_surface_hardly_counts(graph, shape):

@@ -4,7 +4,8 @@ import numpy as np
 
 from compute import TriangleMesh, analyze
 from compute.registration.dense.by_number import map_by_number
-from compute.registration.dense.shape_pair import nearest_known, triangle_around
+from compute.registration.dense.shape_pair import triangle_around
+from compute.registration.eigenfunctions.shape_points import nearest_known
 from tests.shapes import tetrahedron
 
 

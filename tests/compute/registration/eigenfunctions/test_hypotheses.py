@@ -1,11 +1,12 @@
 """Signed orders that are known are found."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from compute.registration.eigenfunctions.hypotheses import (
     Effort,
-    Spectrum,
     find_hypotheses,
     nearest_orthogonal,
     spectrum_of,
@@ -31,7 +32,7 @@ def test_a_shape_agrees_best_with_itself(spectrum):
 def test_functions_that_were_flipped_and_switched_are_found(spectrum):
     signs = np.where(np.isin(np.arange(18), [1, 4, 6]), -1.0, 1.0)
     change = (np.eye(18) * signs)[[0, 2, 1, *range(3, 18)]]
-    target = Spectrum(spectrum.values, spectrum.moments.rotated(change))
+    target = replace(spectrum, moments=spectrum.moments.rotated(change))
     np.testing.assert_allclose(find_hypotheses(spectrum, target, QUICK).maps[0], change[:8, :8], atol=0.05)
 
 
