@@ -38,6 +38,7 @@ BENCHMARKS = {
     "segmentation": Benchmark(),
     "robustness": Benchmark(),
     "registration": Benchmark(),
+    "calibration": Benchmark(),
     "registered_parts": Benchmark(),
     "transfer": Benchmark(),
     "skeleton": Benchmark(quick=""),
