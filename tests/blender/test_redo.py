@@ -16,8 +16,8 @@ QUICK = {
 HEAVY = {
     *("analyze", "register_selected", "flip_function", "next_alternative", "transfer"),
     *("write_eigenfunctions", "plot_diagram", "trace_complex"),
-    # Ends when the user is done with clicking; there is no ray to be changed then.
-    "pick_part",
+    # End when the user is done with clicking, or stand beside what they change; there is nothing to be changed then.
+    *("pick_part", "add_point_pair", "remove_point_pair", "clear_point_pairs"),
 }
 INTERNAL = {"cancel", "reset_colors", "add_analysis_preset", "add_transfer_preset"}
 # Changes nothing, so there is nothing to undo or to do again.

@@ -219,4 +219,4 @@ def _correlation(one: Floats, other: Floats, noise: float = 0.0) -> float:
     """Return the correlation, from -1 to 1, with noise of a given size added to both: less where they hardly vary."""
     one, other = one - one.mean(), other - other.mean()
     floor = noise**2 * len(one) + np.finfo(float).tiny
-    return float(one @ other / np.sqrt((one @ one + floor) * (other @ other + floor)))
+    return float(one @ other / (np.sqrt(one @ one + floor) * np.sqrt(other @ other + floor)))

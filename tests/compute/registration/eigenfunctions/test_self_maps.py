@@ -7,7 +7,7 @@ from compute.registration.eigenfunctions.map_scoring import MapScorer, distance_
 from compute.registration.eigenfunctions.matching import match
 from compute.registration.eigenfunctions.self_maps import find_rivals, find_self_maps
 from compute.registration.eigenfunctions.spectral_shape import spectral_shape
-from compute.registration.eigenfunctions.zoomout import nearest_points
+from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
 from tests.compute.registration.shapes import landed_vertices, lumpy_ball, moved, quick, shuffled
 
 # Like a person that stands: a head, arms and legs that fit themselves after half a turn, and a nose that does not.
@@ -39,16 +39,17 @@ def test_a_person_fits_itself_after_half_a_turn(person):
     assert any(turns_round(one, person, person) for one in find_self_maps(person))
 
 
-def test_the_rotations_of_a_star_are_all_found():
+def test_all_rotations_of_a_star_are_rivals():
     arms = [(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(5) / 5]
     star = shape_of(lumpy_ball(4, tuple((arm, 1.5, 0.25) for arm in arms)))
     tips = np.array([(star.positions @ np.array(arm)).argmax() for arm in arms])
+    unturned = MapScorer(star, star).score(np.eye(16)[None])
     steps = set()
-    for one in find_self_maps(star):
-        landed = star.positions[nearest_points(one, star.functions, star.functions[tips])]
+    for start in find_rivals(unturned, star.self_maps, star.self_maps):
+        landed = star.positions[nearest_points(with_constant(start), star.functions, star.functions[tips])]
         angle = np.arctan2(landed[:, 1], landed[:, 0])
         steps.add(round(float(np.median((angle - 2 * np.pi * np.arange(5) / 5) % (2 * np.pi)) / (2 * np.pi / 5))) % 5)
-    assert steps == {1, 2, 3, 4}
+    assert steps >= {1, 2, 3, 4}
 
 
 def test_the_right_map_is_a_rival_of_the_turned_one(person):
