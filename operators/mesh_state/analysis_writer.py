@@ -24,6 +24,7 @@ from .schema import (
     LOST,
     OF_PARTS,
     OTHERWISE_SCALED,
+    PAIRED_EDGE_HEIGHTS,
     PIECE,
     REDRAWN,
     SCHEMA,
@@ -93,7 +94,7 @@ def store_branches(
     mesh: bpy.types.Mesh, branches: tuple[compute.Branches, ...], place_of_vertex: NDArray[np.int64]
 ) -> None:
     """Put new faces of the arcs on a mesh whose faces were cut; its borders can be cut no more."""
-    gone = dict.fromkeys((*ARCS, EDGE_HEIGHTS, PIECE))
+    gone = dict.fromkeys((*ARCS, EDGE_HEIGHTS, PAIRED_EDGE_HEIGHTS, PIECE))
     write_attributes(mesh, {**branch_attributes(branches), **place_attribute(place_of_vertex), **gone})
     remember(mesh, {**packed_branches(branches), FINGERPRINT: fingerprint(mesh), REDRAWN: None})
 

@@ -45,14 +45,17 @@ ARCS = (
     OwnAttribute(".eigenparts_arc_minima", "INT", "POINT"),
 )
 HEIGHT = OwnAttribute(".eigenparts_height", "FLOAT", "POINT")
-EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vector")
+# Two are used: exporters of Blender 5.2 take any attribute of two numbers for a UV map, and split the mesh along it.
+EDGE_HEIGHTS = OwnAttribute(".eigenparts_heights_of_edge", "FLOAT_VECTOR", "EDGE", "vector")
+# Of 0.1.0; read where it is, and gone with the next analysis.
+PAIRED_EDGE_HEIGHTS = OwnAttribute(".eigenparts_edge_heights", "FLOAT2", "EDGE", "vector")
 # The vertex that stands for each where several lie at one place along a seam; not there if none do.
 PLACES = OwnAttribute(".eigenparts_place", "INT", "POINT")
 # The part each face was painted with and one more, so that 0 is none.
 PAINTED = OwnAttribute("eigenparts_painted", "INT", "FACE")
 # The branches divided as corrections need them; the attribute is there only while some do.
 PIECE = OwnAttribute(".eigenparts_piece", "INT", "FACE")
-ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, PLACES, PAINTED, PIECE)
+ATTRIBUTES = (*BRANCHES, *ARCS, HEIGHT, EDGE_HEIGHTS, PAIRED_EDGE_HEIGHTS, PLACES, PAINTED, PIECE)
 
 # More than any mesh has, so that a damaged number makes no table that fills the memory.
 MOST_LABELS = 1 << 22

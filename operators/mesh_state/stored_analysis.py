@@ -25,6 +25,7 @@ from .schema import (
     HEIGHT,
     HIERARCHY,
     INSIDE_EDGES,
+    PAIRED_EDGE_HEIGHTS,
     PIECES_OF_TREE,
     PLACES,
     STRETCH,
@@ -123,7 +124,8 @@ def source_attributes(source: BorderSource) -> dict[OwnAttribute, Values | None]
     return {
         **dict(zip_longest(ARCS, source.profile.arcs)),
         HEIGHT: source.vertex_heights.astype(np.float32),
-        EDGE_HEIGHTS: np.pad(inside, ((0, 0), (0, 2 - inside.shape[1]))).astype(np.float32),
+        EDGE_HEIGHTS: np.pad(inside, ((0, 0), (0, 3 - inside.shape[1]))).astype(np.float32),
+        PAIRED_EDGE_HEIGHTS: None,
     }
 
 
@@ -171,13 +173,20 @@ def unpacked_source(mesh: bpy.types.Mesh, group: Any, part_tree: compute.PartTre
     if ARCS[0].name not in mesh.attributes:
         raise Refusal(CUT)
     edges, heights = read_edges(mesh), vertex_heights(mesh)
-    inside = read_own_floats(mesh, EDGE_HEIGHTS, 2).reshape(-1, 2)[:, :n_inside].astype(np.float64)
+    inside = _inside_heights(mesh)[:, :n_inside].astype(np.float64)
     along = np.column_stack([heights[edges[:, 0]], inside, heights[edges[:, 1]]])
     arcs = tuple(read_own_integers(mesh, attribute) for attribute, _ in zip(ARCS, part_tree.trees, strict=False))
     if not all(lie_within(arc, -1, len(values)) for arc, values in zip(arcs, part_tree.closing_heights, strict=True)):
         raise Refusal(DAMAGED)
     along[(arcs[0][edges] < 0).any(axis=1)] = np.nan
     return BorderSource(compute.EdgeProfile(edges, along, arcs), heights)
+
+
+def _inside_heights(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Return the (E, 2 or 3) values on the edges, of which those inside come first."""
+    if PAIRED_EDGE_HEIGHTS.is_on(mesh) and not EDGE_HEIGHTS.is_on(mesh):
+        return read_own_floats(mesh, PAIRED_EDGE_HEIGHTS, 2).reshape(-1, 2)
+    return read_own_floats(mesh, EDGE_HEIGHTS, 3).reshape(-1, 3)
 
 
 def has_trees(group: Any, hierarchy: compute.Hierarchy) -> bool:

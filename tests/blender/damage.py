@@ -98,7 +98,7 @@ def damage_attribute(mesh, name, kind):
     if kind in ("gone", "other type", "other domain"):
         mesh.attributes.remove(attribute)
     if kind == "other type":
-        mesh.attributes.new(name, "FLOAT_VECTOR", domain)
+        mesh.attributes.new(name, "FLOAT_COLOR", domain)
     if kind == "other domain":
         mesh.attributes.new(name, data_type, "CORNER" if domain != "CORNER" else "POINT")
     if kind in ("huge", "negative", "no numbers", "shuffled", "zero"):
@@ -109,7 +109,7 @@ def _fill(attribute, kind):
     storage = {
         "INT": ("value", 1, np.int32),
         "FLOAT": ("value", 1, np.float32),
-        "FLOAT2": ("vector", 2, np.float32),
+        "FLOAT_VECTOR": ("vector", 3, np.float32),
         "FLOAT_COLOR": ("color", 4, np.float32),
     }
     name, n_components, dtype = storage[attribute.data_type]

@@ -123,3 +123,12 @@ def test_an_analysis_by_eigenfunction_tells_which_one_suits(star_object, extensi
     assert f"Eigenfunction {found[0][0]} suits best" in room.function_hints.sentence(found)
     bpy.ops.eigenparts.analyze(field="DIFFUSION")
     assert room.state.read(star_object.data).function_hints == []
+
+
+def test_exporters_take_nothing_of_an_analysis_for_a_uv_map(analyzed, tmp_path):
+    bpy.ops.wm.ply_export(filepath=str(tmp_path / "star.ply"))
+    bpy.ops.wm.obj_export(filepath=str(tmp_path / "star.obj"))
+    header = (tmp_path / "star.ply").read_bytes().split(b"end_header")[0].decode("latin-1")
+    assert f"element vertex {len(analyzed.data.vertices)}\n" in header
+    assert "property float s" not in header
+    assert not [line for line in (tmp_path / "star.obj").read_text().splitlines() if line.startswith("vt ")]

@@ -51,7 +51,8 @@ def result_of(path):
 def with_material(obj, name, colour, image=None):
     """Give an object one material more, with an image or a colour."""
     material = bpy.data.materials.new(name)
-    material.use_nodes = True
+    if material.node_tree is None:
+        material.use_nodes = True
     shader = material.node_tree.nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = colour
     if image:

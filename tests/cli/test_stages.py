@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.writing import cli
+from tests.cli.writing import cli, line_of
 
 # Holds a stage in a folder until it is told to end.
 HOLDER = """
@@ -16,7 +16,7 @@ from pathlib import Path
 from tests.cli.writing import cli
 with cli("results.stages").stage_in(Path(sys.argv[1])) as stage:
     (stage / "half").touch()
-    print(stage.name, flush=True)
+    print("stage:", stage.name, flush=True)
     sys.stdin.read()
 """
 
@@ -32,7 +32,7 @@ def other_run(tmp_path):
     command = [sys.executable, "-c", HOLDER, str(tmp_path)]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
     with subprocess.Popen(command, cwd=Path(__file__).parents[2], **pipes) as process:
-        yield process, tmp_path / process.stdout.readline().strip()
+        yield process, tmp_path / line_of(process, "stage: ")
         process.kill()
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import bpy
 import pytest
 
-from tests.cli.writing import Calls, cli, run_job, save_as_text, size_of
+from tests.cli.writing import Calls, cli, line_of, run_job, save_as_text, size_of
 
 OFTEN, SELDOM = [".off", ".obj", ".glb"], [".ply", ".fbx", ".blend"]
 SUFFIXES = [*OFTEN, *(pytest.param(suffix, marks=pytest.mark.long) for suffix in SELDOM)]
@@ -190,7 +190,7 @@ def process_at_work(job):
     """Yield a process that writes results of one size and the other in turns."""
     command = [sys.executable, "-m", "tests.cli.write_on", job.path, job.target]
     with subprocess.Popen(list(map(str, command)), cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline() == "begins\n"
+        line_of(process, "begins")
         yield process
         process.kill()
 

@@ -26,6 +26,12 @@ def cli(name):
     return import_module(f"eigenparts.cli.{name}")
 
 
+def line_of(process, beginning):
+    """Wait for the line of a process that begins so, and return the rest of it; Blender may say something before."""
+    line = next(line for line in process.stdout if line.startswith(beginning))
+    return line.removeprefix(beginning).strip()
+
+
 class Resize:
     """A command that leaves a file open with a star of another size for each level."""
 

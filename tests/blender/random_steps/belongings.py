@@ -54,7 +54,10 @@ def collections() -> list[str]:
     return sorted(
         declared.identifier
         for declared in bpy.data.bl_rna.properties
-        if declared.type == "COLLECTION" and declared.identifier not in PASSING
+        if declared.type == "COLLECTION"
+        and declared.identifier not in PASSING
+        # Since 5.2 there is a list of all of them, too.
+        and declared.fixed_type.identifier != "ID"
     )
 
 
