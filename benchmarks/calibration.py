@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from benchmarks.peers import versions_of
 from benchmarks.posed_families import FAMILIES, read_mesh
-from benchmarks.registration import OURS, Ledger, Outcome, families, run_ours
+from benchmarks.registration import OURS, Ledger, Outcome, families, run_family
 from benchmarks.registration_truth import JUDGED_FUNCTIONS
 from compute.analysis.analyze import analyze
 from compute.registration.eigenfunctions.matching import match_shapes
@@ -124,10 +124,7 @@ def main() -> None:
     ledger = Ledger(arguments.outcomes)
     run_scans(arguments.data, ledger)
     for family in families(arguments.data, arguments.families.split(","), arguments.cache):
-        for kind in KINDS:
-            for poses in family.pairs(arguments.pairs):
-                if not ledger.has(OURS, family.name, kind, poses):
-                    ledger.add(run_ours(family, kind, poses))
+        run_family(family, KINDS, arguments.pairs, 0, ledger)
     for name, chosen in (("Judged on", False), ("Chosen on", True)):
         outcomes = [one for one in ledger.outcomes if (one.family in CHOSEN_ON) == chosen]
         print(f"\n{name}:\n")

@@ -10,7 +10,7 @@ import argparse
 import json
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -148,13 +148,13 @@ def run_peer(method: str, family: Family, kind: str, poses: tuple[int, int]) -> 
     return Outcome(method, family.name, kind, poses, error, *wrong, float("nan"), seconds)
 
 
-def run_family(family: Family, kinds: list[str], n_pairs: int, peer_every: int, ledger: Ledger) -> None:
-    """Match pairs of a family, and some of them by the peer."""
+def run_family(family: Family, kinds: Sequence[str], n_pairs: int, peer_every: int, ledger: Ledger) -> None:
+    """Match pairs of a family, and every few of them by the peer; none if ``peer_every`` is 0."""
     for kind in kinds:
         for place, poses in enumerate(family.pairs(n_pairs)):
             if not ledger.has(OURS, family.name, kind, poses):
                 ledger.add(run_ours(family, kind, poses))
-            for method in ORIENTATION_WEIGHTS if is_installed("pyFM") else ():
+            for method in ORIENTATION_WEIGHTS if peer_every and is_installed("pyFM") else ():
                 if place % peer_every == 0 and not ledger.has(method, family.name, kind, poses):
                     ledger.add(run_peer(method, family, kind, poses))
 

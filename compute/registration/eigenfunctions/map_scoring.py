@@ -127,6 +127,7 @@ class MapScorer:
         self._positions = source.project(source.positions)[:last]
         self._neighbours = _neighbours(target)
         self._normals = source.project(source.normals)[:last]
+        self._fine_curvature: dict[Candidate, float] = {}
 
     def score(
         self, starts: Floats, signs: Mapping[int, int] | None = None, progress: Progress = silent
@@ -149,11 +150,13 @@ class MapScorer:
         return candidates
 
     def fine_curvature(self, candidate: Candidate) -> float:
-        """Return the correlation of fine curvature over the map of a candidate, from -1 to 1."""
-        source, samples = self._source, self._target.samples
-        nearest = nearest_points(candidate.functional_map, source.functions, self._target.functions[samples])
-        curvature = source.fine_curvature[nearest], self._target.fine_curvature[samples]
-        return _correlation(*curvature, noise=CURVATURE_NOISE)
+        """Return the correlation of fine curvature over the map of a candidate, from -1 to 1; it is kept."""
+        if candidate not in self._fine_curvature:
+            source, samples = self._source, self._target.samples
+            nearest = nearest_points(candidate.functional_map, source.functions, self._target.functions[samples])
+            curvature = source.fine_curvature[nearest], self._target.fine_curvature[samples]
+            self._fine_curvature[candidate] = _correlation(*curvature, noise=CURVATURE_NOISE)
+        return self._fine_curvature[candidate]
 
     def _candidate(self, start: Floats, signs: Mapping[int, int]) -> Candidate:
         source, target = self._source_samples, self._target_samples

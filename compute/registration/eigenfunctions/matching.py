@@ -155,8 +155,8 @@ def match(
     """
     require_pair(source.surface, target.surface)
     progress = rising(progress or silent)
-    shapes = matching_shape(source, section(progress, 0, 0.3)), matching_shape(target, section(progress, 0.3, 0.6))
-    rest = section(progress, 0.6, 1)
+    shapes = matching_shape(source, section(progress, 0, 0.2)), matching_shape(target, section(progress, 0.2, 0.4))
+    rest = section(progress, 0.4, 1)
     surfaces = source.surface, target.surface
     return match_surfaces(*surfaces, *shapes, points=points, flips=flips, mirrored=mirrored, progress=rest)
 
@@ -164,9 +164,7 @@ def match(
 @told_if_full
 def matching_shape(analysis: Analysis, progress: Progress = silent) -> SpectralShape:
     """Return a shape ready to be matched, with functions that are computed now if they were not before."""
-    shape = spectral_shape(analysis.find_matching_basis(section(progress, 0, 0.8)))
-    prepare_shape(shape, section(progress, 0.8, 1))
-    return shape
+    return spectral_shape(analysis.find_matching_basis(progress))
 
 
 def match_surfaces(
@@ -216,6 +214,9 @@ def match_shapes(
     progress: Progress = silent,
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
+    measuring, progress = section(progress, 0, 0.4), section(progress, 0.4, 1)
+    for shape, share in zip((source, target), _halves(measuring), strict=True):
+        prepare_shape(shape, share)
     seen = source.mirrored() if mirrored else source
     searching, fitting = section(progress, 0, 1 if fit is None else 0.75), section(progress, 0.75, 1)
     scorer = MapScorer(seen, target)

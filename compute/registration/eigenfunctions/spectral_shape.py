@@ -11,7 +11,7 @@ from ...fem.assembly import stiffness_matrix
 from ...fem.eigenbasis import Eigenbasis
 from ...fem.space import function_space
 from ...fields.scalar_field import refined_net
-from ...progress import Progress
+from ...progress import Progress, silent
 from ...surface.mesh import Floats, Ints, TriangleMesh, unit_rows
 from ...surface.orientation import reversed_where, wrongly_wound
 from ...surface.ties import CHOICE
@@ -158,7 +158,7 @@ def spectral_shape(basis: Eigenbasis) -> SpectralShape:
     )
 
 
-def prepare_shape(shape: SpectralShape, progress: Progress) -> None:
+def prepare_shape(shape: SpectralShape, progress: Progress = silent) -> None:
     """Compute the attributes that a shape keeps, with a report before each; the callback may raise `Cancelled`."""
     for number, name in enumerate(KEPT):
         progress(number / len(KEPT), "Measuring the functions")

@@ -88,7 +88,6 @@ class _Pair:
     def __init__(self, source: SpectralShape, target: SpectralShape, matching: Matching) -> None:
         self._scorer = MapScorer(source, target)
         self._size = min(FLIPPABLE, source.n_functions - 1, target.n_functions - 1)
-        self._evidence: dict[Candidate, float] = {}
         self.matching = matching
         self.is_given = matching.same_topology or len(matching.points) > 0
         self.candidates: list[Candidate] = []
@@ -107,10 +106,8 @@ class _Pair:
 
     def evidence_of(self, candidate: Candidate) -> float:
         """Return the log odds of a candidate; one that is torn has to be borne by all others."""
-        if candidate not in self._evidence:
-            evidence = evidence_of(candidate, self._scorer.fine_curvature(candidate))
-            self._evidence[candidate] = evidence - COST_WEIGHT * float(np.log(SPREAD)) * candidate.is_torn
-        return self._evidence[candidate]
+        evidence = evidence_of(candidate, self._scorer.fine_curvature(candidate))
+        return evidence - COST_WEIGHT * float(np.log(SPREAD)) * candidate.is_torn
 
     def likely(self, candidates: Sequence[Candidate]) -> Floats:
         """Return the probabilities of different candidates of this pair alone."""

@@ -20,6 +20,7 @@ from ..dense.point_map import point_map
 from ..eigenfunctions.given_points import point_pairs
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
 from ..eigenfunctions.pair_memory import require_pair
+from ..eigenfunctions.spectral_shape import prepare_shape
 from ..eigenfunctions.synchronization import pairs_in_row, synchronized
 from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_first_free
 from .transferred_labels import Divisible, FaceLabels, divisible, transfer_labels
@@ -130,6 +131,9 @@ def register(
     progress(0.0, "Preparing the reference")
     reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
     prepared = prepare_reference(analyses[reference], reference_segmentation)
+    if executor is not None:
+        # What goes to other processes is measured once, not in each of them.
+        prepare_shape(prepared.shape.shape)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
     given = [None] * len(others) if points is None else list(points)
     if len(given) != len(others):
