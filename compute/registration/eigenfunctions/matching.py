@@ -19,7 +19,7 @@ from .given_points import PointFit, checked_points, point_pairs, point_warnings,
 from .hypotheses import Effort, find_hypotheses, spectrum_of
 from .map_scoring import Candidate, MapScorer, distinct_candidates, ranked
 from .pair_memory import require_pair
-from .self_maps import find_rivals
+from .self_maps import find_rivals, promising
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
 from .zoomout import MATCHING_SIZES, rounded, with_constant
 
@@ -215,8 +215,8 @@ def match_shapes(
 ) -> Matching:
     """Match the functions of two shapes; ``signs`` are given by the source's function, from 0."""
     measuring, progress = section(progress, 0, 0.4), section(progress, 0.4, 1)
-    for shape, share in zip((source, target), _halves(measuring), strict=True):
-        prepare_shape(shape, share)
+    prepare_shape(source, section(measuring, 0, 0.8), with_self_maps=not signs)
+    prepare_shape(target, section(measuring, 0.8, 1))
     seen = source.mirrored() if mirrored else source
     searching, fitting = section(progress, 0, 1 if fit is None else 0.75), section(progress, 0.75, 1)
     scorer = MapScorer(seen, target)
@@ -225,7 +225,7 @@ def match_shapes(
         candidates, rivals = _found_with_signs(seen, target, scorer, signs, searching)
     else:
         # A shape's mirror image fits itself in the same ways as the shape.
-        candidates = _found(seen, target, scorer, (source.self_maps, target.self_maps), searching)
+        candidates = _found(seen, target, scorer, source.self_maps, searching)
     if fit is not None:
         candidates, rivals = _drawn_to_points(fit, candidates, rivals, scorer, signs or {}, fitting)
     weighed = _weighed(candidates, rivals, scorer)
@@ -238,7 +238,7 @@ def _found(
     source: SpectralShape,
     target: SpectralShape,
     scorer: MapScorer,
-    self_maps: tuple[list[Floats], list[Floats]],
+    self_maps: list[Floats],
     progress: Progress,
 ) -> list[Candidate]:
     """Return scored hypotheses with their rivals, best first; the search is widened until the likeliest is sure."""
@@ -249,7 +249,7 @@ def _found(
         hypotheses = find_hypotheses(*spectra, effort, progress=searching)
         found, rivalling = _halves(refining)
         candidates += scorer.score(hypotheses.best(effort.n_refined).maps, progress=found)
-        rivals = find_rivals(ranked(candidates), *self_maps)
+        rivals = promising(find_rivals(ranked(candidates), self_maps), source, target)
         candidates = ranked(candidates + scorer.score(rivals, progress=rivalling))
         if _weighed(candidates, [], scorer)[0][1] >= SURE:
             break

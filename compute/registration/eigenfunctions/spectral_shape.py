@@ -21,8 +21,8 @@ from .moments import Moments, moments_of, point_areas
 N_SAMPLES = 1000
 # Functions that moments are taken of: the last level of matching and the places a function may move by.
 MOMENT_FUNCTIONS = 18
-# Attributes that matching asks of a shape, which keeps them.
-KEPT = ("samples", "moments", "normals", "curvature", "fine_curvature", "self_maps")
+# Attributes that matching asks of any shape, which keeps them; of the source it asks for self-maps, too.
+KEPT = ("samples", "moments", "normals", "curvature", "fine_curvature")
 # Time of the smoothing of curvature, in units of the area: details below 2 % of the shape's size do not count.
 CURVATURE_TIME = 5e-4
 FINE_TIME = 1e-4
@@ -158,10 +158,11 @@ def spectral_shape(basis: Eigenbasis) -> SpectralShape:
     )
 
 
-def prepare_shape(shape: SpectralShape, progress: Progress = silent) -> None:
+def prepare_shape(shape: SpectralShape, progress: Progress = silent, *, with_self_maps: bool = False) -> None:
     """Compute the attributes that a shape keeps, with a report before each; the callback may raise `Cancelled`."""
-    for number, name in enumerate(KEPT):
-        progress(number / len(KEPT), "Measuring the functions")
+    names = (*KEPT, "self_maps") if with_self_maps else KEPT
+    for number, name in enumerate(names):
+        progress(number / len(names), "Measuring the functions")
         getattr(shape, name)
 
 

@@ -133,7 +133,7 @@ def register(
     prepared = prepare_reference(analyses[reference], reference_segmentation)
     if executor is not None:
         # What goes to other processes is measured once, not in each of them.
-        prepare_shape(prepared.shape.shape)
+        prepare_shape(prepared.shape.shape, with_self_maps=True)
     others = [analysis for number, analysis in enumerate(analyses) if number != reference]
     given = [None] * len(others) if points is None else list(points)
     if len(given) != len(others):
