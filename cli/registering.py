@@ -91,7 +91,10 @@ class Register:
         for obj in objects:
             try:
                 given = mesh_registration.read_target(bpy.context, obj, shared.settings)
-                shapes[obj.name] = shape_registration.matchable_shape(given, silent)
+                shape = shape_registration.matchable_shape(given, silent)
+                # By itself first, as one that cannot be matched is to cost no other; its matching is kept.
+                shape_registration.match_all(prepared, [shape], [shared.options], silent)
+                shapes[obj.name] = shape
             except (Refusal, EngineError) as error:
                 errors[obj.name] = error
         options = [shared.options] * len(shapes)

@@ -70,6 +70,21 @@ def test_a_transfer_keeps_points_exactly(run, stars, tmp_path):
     assert weights[copy_tips[0]] == 1
 
 
+def test_a_mesh_that_points_do_not_fit_costs_no_other_of_its_file(run, stars, tmp_path):
+    star, _, tips, _ = stars
+    smaller, same = (lumpy_ball(level, tuple((tuple(arm), 1.5, 0.25) for arm in ARMS)) for level in (2, 3))
+    add_object(smaller, "smaller")
+    add_object(same, "same")
+    path = write_blend(tmp_path / "two.blend")
+    # The smaller one has 162 vertices.
+    points = write_points(tmp_path / "points.json", [[tips[1], tips[1]]])
+    code, report, _ = run("register", path, "--source", star, "--points", points, "--json")
+    rows = {row["name"]: row for row in report["files"][0]["objects"]}
+    assert code == 1
+    assert "Point 1 names vertex" in rows["smaller"]["error"]
+    assert rows["same"]["confidence"] > 0.5
+
+
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
