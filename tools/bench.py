@@ -41,6 +41,7 @@ BENCHMARKS = {
     "calibration": Benchmark(),
     "registered_parts": Benchmark(),
     "transfer": Benchmark(),
+    "between_characters": Benchmark(),
     "skeleton": Benchmark(quick=""),
     "slider": Benchmark("", "--vertices 10000"),
     "size": Benchmark("", "--vertices 13000"),
