@@ -1,6 +1,6 @@
 """The part of a mesh that is analyzed, clean, with the analyzed triangle for every triangle of the input."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -36,6 +36,8 @@ class Surface:
         Whether these are analyzed each by itself; otherwise the surface is connected.
     n_left_out : int
         Triangles of the input that have collapsed or repeat others.
+    faceless : (n,) int64
+        Vertices of the input that no triangle of it has.
     """
 
     mesh: TriangleMesh
@@ -46,6 +48,7 @@ class Surface:
     n_joined: int = 1
     is_apart: bool = False
     n_left_out: int = 0
+    faceless: Ints = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
 
 def clean_surface(mesh: TriangleMesh, component: int | None = None) -> Surface:
@@ -156,6 +159,7 @@ def _surface_of(mesh: TriangleMesh, welded: _Welded, is_chosen: Bools) -> Surfac
         triangle_of_input=nearest,
         n_components=n_components,
         n_left_out=len(welded.twin) - len(welded.input_triangle),
+        faceless=np.setdiff1d(np.arange(len(mesh.vertices)), mesh.used, assume_unique=True),
     )
 
 

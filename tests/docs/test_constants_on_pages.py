@@ -36,9 +36,10 @@ METHOD = {
     "sizes of the map": f"from {zoomout.MATCHING_SIZES[0]} to {zoomout.MATCHING_SIZES[-1]}",
     "tearing": f"({map_scoring.USUAL_TEARING:g} + τ)",
     "evidence": f"{map_confidence.CURVATURE_WEIGHT:g} min(ρ, {map_confidence.FULL_AGREEMENT:g})"
-    f" - {map_confidence.COST_WEIGHT:g} ln(cost",
+    f" - {map_confidence.COST_WEIGHT:g} ln max(cost",
+    "tie": f"less than {map_confidence.TIE:g}",
     "doubtful cost": f"(1 + cost / {power(map_confidence.DOUBTFUL_COST)})",
-    "least cost": f"(cost + {power(map_scoring.LEAST_COST)})",
+    "least cost": f"max(cost, {power(map_scoring.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
     "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",
     "nodes": f"up to {by_shape.N_NODES} nodes",

@@ -158,7 +158,6 @@ def correspond(
         matching = held_to_points(matching, points, source.surface, target.surface, *shapes)
     source_shape = shapes[0].mirrored() if matching.mirrored else shapes[0]
     pair = ShapePair(source=source, target=target, source_shape=source_shape, target_shape=shapes[1], matching=matching)
-    _check_points(pair)
     if matching.same_topology:
         return _correspondence(pair, map_by_number(source, target), BY_NUMBER)
     _check_matching(pair)
@@ -172,14 +171,6 @@ def _check_matching(pair: ShapePair) -> None:
     n_target, n_source = pair.matching.map.shape
     if n_target >= pair.target_shape.n_functions or n_source >= pair.source_shape.n_functions:
         raise RegistrationError("The matching is for other shapes than these two.")
-
-
-def _check_points(pair: ShapePair) -> None:
-    shapes = ("source", pair.source), ("target", pair.target)
-    for (name, analysis), vertices in zip(shapes, pair.matching.points.T, strict=True):
-        faceless = vertices[~np.isin(vertices, analysis.mesh.used)]
-        if len(faceless):
-            raise RegistrationError(f"Vertex {faceless[0]} of the {name} has no face; give another one as a point.")
 
 
 def _with_points_kept(pair: ShapePair, image: Image) -> Image:

@@ -10,6 +10,8 @@ from .map_scoring import LEAST_COST, Candidate
 # Log odds of one map against another: for each factor e that it costs less, and for fine curvature that agrees better.
 # Fitted, like the cost below, to pairs whose truth is known (docs/registration.md, "Confidence").
 COST_WEIGHT, CURVATURE_WEIGHT = 2.5, 15.0
+# Log odds that differ by less say nothing: so do those of maps that are equally right, between two triangulations.
+TIE = 0.3
 # Cost at which it is as likely that no map is right as that the best is.
 DOUBTFUL_COST = 1e-5
 # Curvature that agrees better than this says nothing: so it does over the right map between other triangulations.
@@ -26,7 +28,7 @@ def evidence_of(candidate: Candidate, curvature: float) -> float:
         Agreement of the fine curvature under it, from -1 to 1.
     """
     agreement = min(curvature, FULL_AGREEMENT)
-    return CURVATURE_WEIGHT * agreement - COST_WEIGHT * float(np.log(candidate.cost + LEAST_COST))
+    return CURVATURE_WEIGHT * agreement - COST_WEIGHT * float(np.log(max(candidate.cost, LEAST_COST)))
 
 
 def fit_of(candidate: Candidate) -> float:
@@ -48,5 +50,5 @@ def probabilities(candidates: Sequence[Candidate], evidence: Sequence[float]) ->
     if not is_whole.any():
         return np.zeros(len(candidates))
     lead = np.asarray(evidence) - np.asarray(evidence)[is_whole].max()
-    odds = np.where(is_whole, np.exp(np.minimum(lead, 0.0)), 0.0)
+    odds = np.where(is_whole, np.exp(np.where(lead > -TIE, 0.0, lead)), 0.0)
     return fit_of(candidates[int(odds.argmax())]) * odds / odds.sum()

@@ -108,20 +108,23 @@ def point_pairs(
     return PointPairs(vertices, points[0][vertices[:, 0]], points[1][vertices[:, 1]])
 
 
-def checked_points(points: ArrayLike | None, n_source: int, n_target: int) -> Ints:
-    """Return (p, 2) pairs of vertices of a source and a target with so many of them; none if None.
+def checked_points(points: ArrayLike | None, source: Surface, target: Surface) -> Ints:
+    """Return (p, 2) pairs of vertices of the inputs of two surfaces; none if None.
 
     Raises
     ------
     RegistrationError
-        If they are no pairs of whole numbers, a shape has no such vertex, or one is in two pairs.
+        If they are no pairs of whole numbers, a shape has no such vertex, or one has no face or is in two pairs.
     """
     pairs = _as_pairs([] if points is None else points)
-    for column, (name, n_vertices) in enumerate((("source", n_source), ("target", n_target))):
+    for column, (name, surface) in enumerate((("source", source), ("target", target))):
+        n_vertices = len(surface.vertex_of_input)
         for number, vertex in enumerate(pairs[:, column].tolist(), start=1):
             if not 0 <= vertex < n_vertices:
                 told = f"Point {number} names vertex {vertex} of the {name}, which has vertices 0 to {n_vertices - 1}."
                 raise RegistrationError(told)
+            if vertex in surface.faceless:
+                raise RegistrationError(f"Vertex {vertex} of the {name} has no face; give another one as a point.")
         kinds, first, count = np.unique(pairs[:, column], return_index=True, return_counts=True)
         if (count > 1).any():
             twice = kinds[count > 1][first[count > 1].argmin()]

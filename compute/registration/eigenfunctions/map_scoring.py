@@ -19,7 +19,7 @@ from .zoomout import MATCHING_SIZES, nearest_points, sample_functions, with_cons
 SAME_MAP = 0.3
 COMPARED_FUNCTIONS = 10
 # Costs below this say nothing: a shape fits itself in all ways its symmetry allows, up to the triangulation.
-LEAST_COST = 2e-9
+LEAST_COST = 3e-9
 # Neighbouring points that land more than this many times farther apart are torn from each other.
 TORN = 3.0
 # What no map does without: at 1000 samples single points near thin features always are.

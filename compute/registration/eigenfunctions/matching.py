@@ -135,8 +135,8 @@ def match(
     Raises
     ------
     RegistrationError
-        If points are no pairs of vertices of the two, or one is in two pairs; if a sign is given for a function that
-        has none, or is not +1 or -1; or if a shape was analyzed shell by shell.
+        If points are no pairs of vertices of the two, or one has no face or is in two pairs; if a sign is given for a
+        function that has none, or is not +1 or -1; or if a shape was analyzed shell by shell.
 
     References
     ----------
@@ -180,7 +180,7 @@ def match_surfaces(
 ) -> Matching:
     """Match two shapes as `match` does, from their surfaces and the spectral shapes of these."""
     signs = _checked_signs(flips or {})
-    vertices = checked_points(points, len(source.vertex_of_input), len(target.vertex_of_input))
+    vertices = checked_points(points, source, target)
     pairs = point_pairs(vertices, source, target, source_shape, target_shape)
     fit = PointFit(pairs, source_shape, target_shape) if len(vertices) else None
     if not signs and not mirrored and share_topology(source, target):
@@ -229,9 +229,10 @@ def match_shapes(
     if fit is not None:
         candidates, rivals = _drawn_to_points(fit, candidates, rivals, scorer, signs or {}, fitting)
     weighed = _weighed(candidates, rivals, scorer)
-    best, *others = (_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed)
-    matching = replace(best, alternatives=tuple(others[:MAX_ALTERNATIVES]))
-    return matching if fit is None else _held_to_points(matching, fit)
+    found = [_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed]
+    if fit is not None:
+        found = _likeliest_first([_held_to_points(one, fit) for one in found])
+    return replace(found[0], alternatives=tuple(found[1 : 1 + MAX_ALTERNATIVES]))
 
 
 def _found(
@@ -316,7 +317,7 @@ def held_to_points(
     target_shape: SpectralShape,
 ) -> Matching:
     """Return a matching that remembers points, and is less sure the farther from them it is."""
-    vertices = checked_points(points, len(source.vertex_of_input), len(target.vertex_of_input))
+    vertices = checked_points(points, source, target)
     pairs = point_pairs(vertices, source, target, source_shape, target_shape)
     return _held_to_points(matching, PointFit(pairs, source_shape, target_shape))
 
@@ -326,10 +327,15 @@ def _held_to_points(matching: Matching, fit: PointFit) -> Matching:
     return replace(
         matching,
         confidence=matching.confidence * trust_in(gaps),
-        alternatives=tuple(_held_to_points(other, fit) for other in matching.alternatives),
+        alternatives=tuple(_likeliest_first([_held_to_points(other, fit) for other in matching.alternatives])),
         points=fit.pairs.vertices,
         point_gaps=gaps,
     )
+
+
+def _likeliest_first(matchings: Sequence[Matching]) -> list[Matching]:
+    order = np.argsort(-evened(np.array([one.confidence for one in matchings])), kind="stable")
+    return [matchings[number] for number in order.tolist()]
 
 
 def _halves(progress: Progress) -> tuple[Progress, Progress]:

@@ -198,8 +198,26 @@ def test_points_for_another_number_of_shapes_are_refused(ball, copy):
 
 def test_a_vertex_without_faces_is_no_point(ball, copy):
     loose = quick(TriangleMesh(np.vstack([ball.mesh.vertices, [[0, 0, 9]]]), ball.mesh.triangles))
-    with pytest.raises(RegistrationError, match="Vertex 642 of the source has no face"):
-        correspond(loose, copy[0], points=[(642, 0)])
+    for call in (match, correspond):
+        with pytest.raises(RegistrationError, match="Vertex 642 of the source has no face"):
+            call(loose, copy[0], points=[(642, 0)])
+    with pytest.raises(RegistrationError, match="Vertex 642 of the target has no face"):
+        register([copy[0], loose], points=[[(0, 642)]])
+
+
+def test_a_vertex_of_a_shell_that_is_left_out_is_a_point(ball, copy):
+    debris = ball.mesh.vertices[ball.mesh.triangles[:2].ravel()] * 1e-3 + [3, 0, 0]
+    triangles = np.vstack([ball.mesh.triangles, np.arange(6).reshape(2, 3) + len(ball.mesh.vertices)])
+    littered = quick(TriangleMesh(np.vstack([ball.mesh.vertices, debris]), triangles))
+    assert len(match(littered, copy[0], points=[(642, 0)]).point_gaps) == 1
+
+
+def test_alternatives_that_miss_a_point_rank_by_what_is_left_of_their_confidence(starfish):
+    source, target = starfish
+    matching = match(source, target, points=[(tips(source.mesh)[1], tips(target.mesh)[0])])
+    left = [one.confidence for one in (matching, *matching.alternatives)]
+    assert left == sorted(left, reverse=True)
+    assert len(left) > 2
 
 
 def test_no_points_change_nothing(ball, copy):

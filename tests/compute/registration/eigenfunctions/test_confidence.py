@@ -4,9 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
-from compute.registration.eigenfunctions.confidence import DOUBTFUL_COST, evidence_of, probabilities
-from compute.registration.eigenfunctions.map_scoring import Candidate
+from compute import TriangleMesh, analyze, match
+from compute.registration.eigenfunctions.confidence import (
+    COST_WEIGHT,
+    DOUBTFUL_COST,
+    TIE,
+    evidence_of,
+    probabilities,
+)
+from compute.registration.eigenfunctions.map_scoring import LEAST_COST, Candidate
 
 # Scores under which the cost is the commutation.
 GOOD = Candidate(
@@ -43,7 +51,29 @@ def test_rivals_as_good_share_what_there_is():
 
 
 def test_costs_below_what_a_shape_fits_itself_by_say_nothing():
-    assert chances([costing(1e-30), costing(1e-12)], [0.8, 0.8]) == pytest.approx([0.5, 0.5], rel=0.01)
+    assert chances([costing(1e-30), costing(LEAST_COST)], [0.8, 0.8]) == pytest.approx([0.5, 0.5], rel=0.01)
+
+
+def test_evidence_that_differs_by_less_than_between_equally_right_maps_decides_nothing():
+    tied, told = ([costing(1e-7), costing(1e-7 * np.exp(gap / COST_WEIGHT))] for gap in (0.9 * TIE, 1.1 * TIE))
+    assert chances(tied, [0.8, 0.8]) == pytest.approx([0.5, 0.5], rel=0.03)
+    assert chances(told, [0.8, 0.8])[0] > 0.55
+
+
+def flat_strip(seed: int) -> TriangleMesh:
+    """Return a rectangle, half as long again as wide, of random triangles: it fits itself turned by half a turn."""
+    random = np.random.default_rng(seed)
+    sides = np.linspace(0, 1, 12)
+    border = [(x, y) for x in sides for y in sides if {x, y} & {0.0, 1.0}]
+    places = np.vstack([border, random.uniform(0.02, 0.98, (200, 2))]) * [1.5, 1]
+    return TriangleMesh(np.column_stack([places, np.zeros(len(places))]), Delaunay(places).simplices)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_maps_that_are_equally_right_are_none_of_them_sure(seed):
+    matching = match(*(analyze(flat_strip(one)) for one in (seed, 10 + seed)))
+    assert matching.confidence == pytest.approx(0.5, rel=0.01)
+    assert matching.alternatives[0].confidence == matching.confidence
 
 
 def test_of_equal_costs_the_finer_curvature_is_likelier():
