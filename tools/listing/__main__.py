@@ -34,7 +34,7 @@ CAPTIONS = {
         "In the sidebar of the 3D view",
         "Levels, names, corrections and registration in the order of the work",
     ),
-    "weights.png": ("Weights for another mesh", "Vertex groups, shape keys, UV maps and colors go along, too"),
+    "weights.png": ("Weights for another mesh", "Shape keys, UV maps, colors and materials go along, too"),
     "bones.png": ("An armature in the parts", "Joints where parts meet, bound to the mesh"),
 }
 RENDERED: dict[str, Callable[[], Image.Image]] = {

@@ -32,6 +32,8 @@ FINE_MESH = 10000
 FINE = 1e-3
 # Drawn twice as large, which smooths its corners.
 ICON, ROUNDING = 256, 44
+# Across a pose beside one whose arms are spread.
+NARROW = 410
 # Across what is beside the name.
 FEATURED = 1160
 # Across the enlarged hand.
@@ -123,12 +125,13 @@ def bones(title: str, line: str) -> Image.Image:
 
 
 def weights(title: str, line: str) -> Image.Image:
-    """Return weights of one mesh, and what others get of them."""
-    view, images = _column(4, _room(0.88)), []
+    """Return weights of one mesh, whose arms are spread, and what others get of them."""
+    images = []
     for mesh, values in zip(transferred.posed(), transferred.carried_weights(), strict=True):
         obj = add_mesh("Mesh", mesh.vertices, mesh.triangles)
         transferred.paint_values(obj, values)
-        images.append(shot([obj], view))
+        width = NARROW if images else WIDTH - 3 * NARROW
+        images.append(shot([obj], View(18, 8, width, TALL, SAMPLES, _room(0.3, 1.72))))
     return _row(title, line, images, transferred.titles())
 
 
@@ -142,10 +145,11 @@ def titled(title: str, line: str) -> Image.Image:
 
 def _row(title: str, line: str, images: Sequence[Image.Image], labels: Sequence[str]) -> Image.Image:
     sheet = titled(title, line)
-    for number, (image, label) in enumerate(zip(images, labels, strict=True)):
-        middle = round((number + 0.5) * WIDTH / len(images))
-        sheet.paste(image, (middle - image.width // 2, TOP))
-        write(sheet, (middle, LABEL_LINE), label, LABEL_SIZE, ink=PALE_INK, anchor="ms")
+    left = 0
+    for image, label in zip(images, labels, strict=True):
+        sheet.paste(image, (left, TOP))
+        write(sheet, (left + image.width / 2, LABEL_LINE), label, LABEL_SIZE, ink=PALE_INK, anchor="ms")
+        left += image.width
     return sheet
 
 
@@ -153,11 +157,10 @@ def _column(n_columns: int, framed: Points) -> View:
     return View(azimuth=18, elevation=8, width=WIDTH // n_columns, height=TALL, samples=SAMPLES, framed=framed)
 
 
-def _room(half_width: float = ROOM[0]) -> Points:
+def _room(half_width: float = ROOM[0], height: float = ROOM[2]) -> Points:
     """Return corners of the box in which a character stands."""
-    _, half_depth, height = ROOM
-    corners = [(x, y, z) for x in (-half_width, half_width) for y in (-half_depth, half_depth) for z in (0, height)]
-    return np.array(corners, dtype=np.float32)
+    across, deep = (-half_width, half_width), (-ROOM[1], ROOM[1])
+    return np.array([(x, y, z) for x in across for y in deep for z in (0, height)], dtype=np.float32)
 
 
 def _with_armature(obj: bpy.types.Object) -> bpy.types.Object:

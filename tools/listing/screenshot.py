@@ -76,10 +76,10 @@ def _prepare(application: Window, archive: Path) -> None:
     application.run("with over_view(): bpy.ops.outliner.orphans_purge(do_recursive=True)")
     for pose, n_vertices, shift in (OTHER, REFERENCE):
         _add(application, humanoid(n_vertices), pose, shift)
-    _run(application, "analyze")
+    _give_parts(application, "analyze", REFERENCE[0])
     application.run(NAMES)
     application.run("for obj in bpy.data.objects: obj.select_set(True)")
-    _run(application, "register_selected")
+    _give_parts(application, "register_selected", OTHER[0])
     application.run(ARRANGED)
     application.settle(CALM)
     application.run(SIDEBAR)
@@ -87,10 +87,10 @@ def _prepare(application: Window, archive: Path) -> None:
     application.point(10, 10)
 
 
-def _run(application: Window, operator: str) -> None:
-    """Run an operator as a button does, and wait for what it does in the background."""
+def _give_parts(application: Window, operator: str, name: str) -> None:
+    """Run an operator as a button does, and wait until the object has parts."""
     application.run(f"with over_view(): bpy.ops.eigenparts.{operator}('INVOKE_DEFAULT')")
-    application.wait_for("not bpy.context.window_manager.eigenparts.is_running", PATIENCE)
+    application.wait_for(f"'part' in bpy.data.objects[{name!r}].data.attributes", PATIENCE)
 
 
 def _add(application: Window, character: Character, pose: str, shift: float) -> None:
