@@ -109,7 +109,7 @@ def poses(title: str, line: str, shown: Sequence[tuple[str, int]]) -> Image.Imag
         if number % 2 == 0:
             mesh_of(obj).shade_flat()
     view = _column(len(shown), _room())
-    labels = [f"{pose.replace('_', ' ')}, {n_vertices:,} vertices" for pose, n_vertices in shown]
+    labels = [f"{pose}, {len(mesh_of(obj).vertices):,} vertices" for (pose, _), obj in zip(shown, objects, strict=True)]
     return _row(title, line, [shot([obj], view) for obj in objects], labels)
 
 
@@ -126,7 +126,7 @@ def bones(title: str, line: str) -> Image.Image:
 
 def weights(title: str, line: str) -> Image.Image:
     """Return weights of one mesh, whose arms are spread, and what others get of them."""
-    images = []
+    images: list[Image.Image] = []
     for mesh, values in zip(transferred.posed(), transferred.carried_weights(), strict=True):
         obj = add_mesh("Mesh", mesh.vertices, mesh.triangles)
         transferred.paint_values(obj, values)
