@@ -10,8 +10,8 @@ from examples import Character, humanoid
 from tools.listing.scenes import LEFT, WIDTH, titled
 from tools.window import Window
 
-# Pixels of the screen, which fills the sheet below its lettering but for a margin, and where it begins.
-SCREEN, TOP = (WIDTH - 2 * LEFT, 784), 228
+# Pixels of the screen, which fills the sheet below its lettering but for a margin, and where its picture begins.
+SCREEN, TOP = (WIDTH - 2 * LEFT, 814), 232
 # Seconds that the application may take to draw itself, and to compute.
 CALM, PATIENCE = 4.0, 900.0
 REFERENCE, OTHER = ("stand", 6000, 0.0), ("walk", 4000, 1.05)
@@ -61,12 +61,18 @@ def window(title: str, line: str, archive: Path) -> Image.Image:
         try:
             _prepare(application, Path(shutil.copy(archive, folder)))
             application.settle(CALM)
-            shown = Image.fromarray(application.pixels())
+            shown = _without_bar(Image.fromarray(application.pixels()), application)
         finally:
             application.close()
     sheet = titled(title, line)
     sheet.paste(shown, (LEFT, TOP))
     return sheet
+
+
+def _without_bar(screen: Image.Image, application: Window) -> Image.Image:
+    """Return what is below the bar of menus, in which Blender has its logo; pictures of extensions may not show it."""
+    top: int = application.value("max(area.y + area.height for area in bpy.context.screen.areas)")
+    return screen.crop((0, screen.height - top, *screen.size))
 
 
 def _prepare(application: Window, archive: Path) -> None:
