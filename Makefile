@@ -9,8 +9,9 @@ NAMES ?=
 FILES ?=
 SHARE ?= 1
 DRAW ?=
+FOLDER ?=
 
-.PHONY: help environment demo pictures bench check test test-long lint package test-matrix test-window clean
+.PHONY: help environment demo pictures bench check test test-long lint package repository listing test-matrix test-window clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1  /p' $(MAKEFILE_LIST)
@@ -44,6 +45,12 @@ lint: environment  ## ruff and mypy
 
 package: environment  ## one installable zip for each platform in dist/
 	@$(RUN) tools/package.py
+
+repository: environment  ## a repository of the zips for a server or shared folder, in dist/repository or FOLDER=path
+	@$(RUN) tools/repository.py $(if $(FOLDER),"$(FOLDER)")
+
+listing: environment  ## icon, pictures and description for the extension site in dist/listing; NAMES="icon.png bones.png" for some
+	@OPENBLAS_NUM_THREADS=1 $(RUN) -m tools.listing $(NAMES)
 
 test-matrix: package  ## tests and zip on every supported Blender and newest numpy, or VERSIONS="4.2.23 5.2.3-newest"
 	@$(RUN) tools/test_matrix.py $(VERSIONS)

@@ -3,32 +3,59 @@
 usage: python tools/package.py
 """
 
+import hashlib
 import re
-import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from tools.builder import run_builder, run_or_exit, validate
+
 WHEELS = ROOT / "wheels"
 DIST = ROOT / "dist"
+# What the package registry gives, as `sha256sum` writes and checks it.
+CHECKSUMS = ROOT / "tools" / "wheels.sha256"
+# Bytes; the extension site takes no more.
+LARGEST = 100_000_000
 
 
 def main() -> int:
-    """Fetch the wheels, build, validate, and print the size of each zip."""
+    """Build all zips and print the size of each."""
+    for archive in build():
+        sys.stdout.write(f"{archive.relative_to(ROOT)}  {archive.stat().st_size / 1e6:.1f} MB\n")
+    return 0
+
+
+def build() -> list[Path]:
+    """Fetch the wheels, build and validate the zips, and return them."""
     manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text())
     for wheel in manifest["wheels"]:
         _fetch(ROOT / wheel)
+        check_wheel(ROOT / wheel)
     DIST.mkdir(exist_ok=True)
     for old in DIST.glob("*.zip"):
         old.unlink()
-    _run_builder("build", "--source-dir", ROOT, "--output-dir", DIST, "--split-platforms")
-    for archive in sorted(DIST.glob("*.zip")):
-        _run_builder("validate", archive)
-        sys.stdout.write(f"{archive.relative_to(ROOT)}  {archive.stat().st_size / 1e6:.1f} MB\n")
-    return 0
+    run_builder("build", "--source-dir", ROOT, "--output-dir", DIST, "--split-platforms")
+    archives = sorted(DIST.glob("*.zip"))
+    for archive in archives:
+        validate(archive)
+        if archive.stat().st_size > LARGEST:
+            sys.exit(f"{archive.name} is larger than the {LARGEST // 10**6} MB that the extension site takes.")
+    return archives
+
+
+def checksums() -> dict[str, str]:
+    """Return the SHA-256 of each wheel by its name."""
+    return {name: checksum for checksum, name in map(str.split, CHECKSUMS.read_text().splitlines())}
+
+
+def check_wheel(wheel: Path) -> None:
+    """End if a wheel is not, byte for byte, the one of the package registry."""
+    if hashlib.sha256(wheel.read_bytes()).hexdigest() != checksums().get(wheel.name):
+        sys.exit(f"{wheel} is not the file that {CHECKSUMS.name} names; remove it, and it is fetched again.")
 
 
 def _fetch(wheel: Path) -> None:
@@ -38,28 +65,9 @@ def _fetch(wheel: Path) -> None:
     package, version, python, _, platform = wheel.stem.split("-")
     options = ["--no-deps", "--only-binary=:all:", "--python-version", re.sub(r"cp3", "3.", python)]
     source = ["--platform", platform.split(".")[0], f"{package}=={version}", "--dest", WHEELS]
-    _run(sys.executable, "-m", "pip", "download", "-qq", "--disable-pip-version-check", *options, *source)
+    run_or_exit(sys.executable, "-m", "pip", "download", "-qq", "--disable-pip-version-check", *options, *source)
     if not wheel.exists():
         sys.exit(f"The wheel {wheel.name} that blender_manifest.toml names is not what the package registry gives.")
-
-
-def _run_builder(*arguments: object) -> None:
-    _run(sys.executable, next(_builders()), *arguments)
-
-
-def _builders() -> Iterator[Path]:
-    """Blender's builder comes with the bpy module and runs without it being loaded."""
-    module = find_spec("bpy")
-    homes = module.submodule_search_locations if module else None
-    if not homes:
-        sys.exit("Blender as a Python module is not installed.")
-    return Path(homes[0]).glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py")
-
-
-def _run(*command: object) -> None:
-    finished = subprocess.run([str(part) for part in command], capture_output=True, text=True)
-    if finished.returncode:
-        sys.exit(f"{' '.join(map(str, command))}\n{finished.stdout}{finished.stderr}")
 
 
 if __name__ == "__main__":

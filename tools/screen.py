@@ -9,17 +9,17 @@ from shutil import which
 import numpy as np
 from numpy.typing import NDArray
 
-# Pixels, and bits for each.
-SIZE = "1600x1000x24"
+# Pixels, where no others are asked for.
+SIZE = 1600, 1000
 
 
 class Screen:
     """An X screen kept in a file, by Xvfb."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, size: tuple[int, int] = SIZE) -> None:
         # Events are made in the application, so the cursor of the screen would only lie in the way.
         options = ["-fbdir", str(folder), "+extension", "GLX", "-nocursor"]
-        command = ["Xvfb", "-displayfd", "1", "-screen", "0", SIZE, *options]
+        command = ["Xvfb", "-displayfd", "1", "-screen", "0", "{}x{}x24".format(*size), *options]
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         assert self._process.stdout is not None
         with self._process.stdout as answer:

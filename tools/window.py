@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tools.screen import Screen, write_png
+from tools.screen import SIZE, Screen, write_png
 
 VARIABLE = "EIGENPARTS_BLENDER"
 USUAL_PLACES = (
@@ -64,11 +64,13 @@ class Window:
     ----------
     folder : Path
         For its settings and extensions; the application must see it under this path.
+    size : tuple of int
+        Pixels of the screen, which the window fills.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, size: tuple[int, int] = SIZE) -> None:
         self.folder = folder
-        self._screen = Screen(folder)
+        self._screen = Screen(folder, size)
         inside = Path(shutil.copy(INSIDE, folder))
         key = secrets.token_bytes(16)
         # If the application dies before it calls, nobody else would end the waiting.

@@ -25,7 +25,9 @@ every_page = pytest.mark.parametrize("page", PAGES, ids=name_of)
 every_page_of_the_guide = pytest.mark.parametrize("page", GUIDE, ids=name_of)
 
 # Of other programs.
-FOREIGN_OPTIONS = {"--background", "--command", "--quiet", "--nthreads", "--nworkers"}
+FOREIGN_OPTIONS = {"--background", "--command", "--quiet", "--nthreads", "--nworkers"} | {
+    *("--online-mode", "--name", "--url", "--enable"),
+}
 FOLDERS = "benchmarks|cli|compute|docs|examples|operators|presets|tests|tools|ui"
 EXAMPLE = re.compile(r"blender --background --command eigenparts ((?:segment|register|transfer|batch) [^\n`]+)")
 

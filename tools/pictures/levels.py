@@ -6,7 +6,6 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from eigenparts.operators.blender.known_values import mesh_of, present
@@ -16,7 +15,7 @@ from tools.pictures.characters import add_mesh, analyze, level_of, segment, stan
 from tools.pictures.lettering import FINENESS, PALE_INK, PAPER, fine_lines, paper, write
 from tools.pictures.moving import Frame, write_gif
 from tools.pictures.shots import light_on, shot_in_light
-from tools.render import Pixels, View
+from tools.render import Pixels, Points, View
 
 POSE = "wave"
 N_VERTICES = 16000
@@ -57,29 +56,29 @@ def draw(target: Path) -> None:
     analyze(obj)
     segment(obj, threshold=FINE)
     finest, _, _ = level_of(obj)
-    hand = _hand(character).astype(np.float32)
+    hand = hand_in_pose(character, POSE)
     whole = View(azimuth=18, width=BODY[0], height=BODY[1], samples=48)
     near = View(azimuth=18, width=2 * LENS_RADIUS, height=2 * LENS_RADIUS, samples=48, framed=hand)
     lit = [(view, light_on([obj], view)) for view in (whole, near)]
     write_gif(_frames([_step(obj, level, lit) for level in range(finest + 1)]), target)
 
 
-def _hand(character: Character) -> NDArray[np.float64]:
+def hand_in_pose(character: Character, pose: str) -> Points:
     """Return the vertices of the hand that is enlarged."""
     shown = [i for i, name in enumerate(character.fine_part_names) if name in HAND]
-    return standing(character, character.poses[POSE])[np.isin(character.fine_part_of_vertex, shown)]
+    return standing(character, character.poses[pose])[np.isin(character.fine_part_of_vertex, shown)].astype(np.float32)
 
 
 def _step(obj: bpy.types.Object, level: int, lit: Sequence[tuple[View, Pixels]]) -> Step:
-    cut = _cut(obj, level)
+    cut = cut_copy(obj, level)
     body, lens = (shot_in_light(light, [cut], view) for view, light in lit)
     image = paper(WIDTH, HEIGHT)
     image.paste(body, BODY_PLACE)
-    _lay_lens(image, lens)
+    lay_lens(image, lens, LENS)
     return Step(level, level_of(cut)[2], image)
 
 
-def _cut(obj: bpy.types.Object, level: int) -> bpy.types.Object:
+def cut_copy(obj: bpy.types.Object, level: int) -> bpy.types.Object:
     """Add a copy of an analyzed object in which the borders of a level run along edges."""
     copy = present(obj.copy())
     copy.data = mesh_of(obj).copy()
@@ -89,10 +88,10 @@ def _cut(obj: bpy.types.Object, level: int) -> bpy.types.Object:
     return copy
 
 
-def _lay_lens(image: Image.Image, lens: Image.Image) -> None:
-    """Lay a round picture with a fine rim over another."""
-    x, y = (middle - LENS_RADIUS for middle in LENS)
-    side = 2 * LENS_RADIUS
+def lay_lens(image: Image.Image, lens: Image.Image, middle: tuple[int, int]) -> None:
+    """Lay a square picture over another as a disc with a fine rim."""
+    side = lens.width
+    x, y = (place - side // 2 for place in middle)
     disc = Image.new("L", (FINENESS * side, FINENESS * side))
     ImageDraw.Draw(disc).ellipse((0, 0, FINENESS * side - 1, FINENESS * side - 1), fill=255)
     image.paste(lens, (x, y), disc.reduce(FINENESS))

@@ -37,7 +37,7 @@ def draw_examples(target: Path) -> None:
     images = []
     for subject in SUBJECTS.values():
         obj = added(subject.mesh("rest"))
-        images.append(shot([obj], subject.view, bone_objects(_rigged(obj))))
+        images.append(shot([obj], subject.view, bone_objects(rigged(obj))))
     sheet([images]).save(target)
 
 
@@ -45,22 +45,23 @@ def draw_posed(target: Path) -> None:
     """Write the humanoid, and the same posed with the armature it was given."""
     character = humanoid()
     obj = add_mesh("Humanoid", standing(character, character.poses["rest"]), character.quads)
-    armature = _rigged(obj)
+    armature = rigged(obj)
     view = View(azimuth=20, elevation=8, width=460, height=480)
     images = [shot([obj], view, bone_objects(armature))]
-    _pose(armature)
+    pose(armature)
     images.append(shot([obj], view, bone_objects(armature)))
     sheet([images]).save(target)
 
 
-def _rigged(obj: bpy.types.Object) -> bpy.types.Object:
+def rigged(obj: bpy.types.Object) -> bpy.types.Object:
+    """Analyze an object, and return the armature that it is given."""
     analyze(obj)
     select([obj])
     run_operator("create_armature")
     return present(bpy.context.object)
 
 
-def _pose(armature: bpy.types.Object) -> None:
+def pose(armature: bpy.types.Object) -> None:
     """Raise one arm, bend the other, lift a knee, turn the head and lean: each by the bones that lie there."""
     for joint, degrees, axis in POSE:
         posed = present(armature.pose).bones[_bone_at(armature, np.array(joint))]

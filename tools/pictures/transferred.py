@@ -35,16 +35,12 @@ def draw_labels(target: Path) -> None:
     """Write the true parts of a character, and what its poses get."""
     parts = _characters()["rest"].fine_part_of_quad.repeat(2)
     carried = [parts, *(found.transfer_faces(parts) for found in _found())]
-    _draw(target, _posed(), carried, paint_faces, _titles())
+    _draw(target, posed(), carried, paint_faces, titles())
 
 
 def draw_weights(target: Path) -> None:
     """Write the weights of some bones together, and what the poses get."""
-    source = _characters()["rest"]
-    shown = [number for number, bone in enumerate(source.bones) if bone.name in BONES]
-    weights = source.weights[:, shown].sum(axis=1)
-    carried = [weights, *(found.transfer(weights) for found in _found())]
-    _draw(target, _posed(), carried, _paint_values, _titles())
+    _draw(target, posed(), carried_weights(), paint_values, titles())
 
 
 def draw_kin(target: Path, data: Path) -> None:
@@ -56,19 +52,40 @@ def draw_kin(target: Path, data: Path) -> None:
     _draw(target, [fox, wolf], carried, paint_faces, ["fox", "wolf"], View(-60, 12, 450, 340))
 
 
+def carried_weights() -> list[Values]:
+    """Return the weights of some bones together, of the first character and as the poses get them."""
+    source = _characters()["rest"]
+    shown = [number for number, bone in enumerate(source.bones) if bone.name in BONES]
+    weights = source.weights[:, shown].sum(axis=1)
+    return [weights, *(found.transfer(weights) for found in _found())]
+
+
+@cache
+def posed() -> list[TriangleMesh]:
+    """Return the meshes, each in its pose and with its own triangulation."""
+    return [TriangleMesh(standing(one, one.poses[pose]), one.triangles) for pose, one in _characters().items()]
+
+
+def titles() -> list[str]:
+    """Return what each mesh is."""
+    return [f"{pose}, {n_vertices:,} vertices" for pose, n_vertices in POSES.items()]
+
+
+def paint_values(obj: bpy.types.Object, values: Floats) -> None:
+    """Give an object the colours of values from 0 to 1 at its vertices."""
+    corners = np.array([face.vertices for face in mesh_of(obj).polygons]).ravel()
+    share = np.clip(values[corners], 0, 1)[:, None]
+    paint(obj, (1 - share) * NONE + share * FULL)
+
+
 @cache
 def _characters() -> dict[str, Character]:
     return {pose: humanoid(n_vertices) for pose, n_vertices in POSES.items()}
 
 
 @cache
-def _posed() -> list[TriangleMesh]:
-    return [TriangleMesh(standing(one, one.poses[pose]), one.triangles) for pose, one in _characters().items()]
-
-
-@cache
 def _found() -> list[Correspondence]:
-    source, *others = (analyze(mesh) for mesh in _posed())
+    source, *others = (analyze(mesh) for mesh in posed())
     return [correspond(source, other) for other in others]
 
 
@@ -77,17 +94,6 @@ def _upright(mesh: TriangleMesh) -> TriangleMesh:
     turned = mesh.vertices @ Y_UP.T
     turned = turned / np.ptp(turned, axis=0).max()
     return TriangleMesh(turned - [0, 0, turned[:, 2].min()], mesh.triangles)
-
-
-def _titles() -> list[str]:
-    return [f"{pose}, {n_vertices:,} vertices" for pose, n_vertices in POSES.items()]
-
-
-def _paint_values(obj: bpy.types.Object, values: Floats) -> None:
-    """Give an object the colours of values from 0 to 1 at its vertices."""
-    corners = np.array([face.vertices for face in mesh_of(obj).polygons]).ravel()
-    share = np.clip(values[corners], 0, 1)[:, None]
-    paint(obj, (1 - share) * NONE + share * FULL)
 
 
 def _draw(
