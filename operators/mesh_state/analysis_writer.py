@@ -14,7 +14,7 @@ from ..mesh_data.mesh_arrays import OwnAttribute, face_areas, fingerprint, write
 from ..mesh_data.world_shape import Stretch, stands_as, users_of
 from ..messages.user_errors import Refusal
 from . import corrections, function_hints
-from .part_table import packed_table, renumbered_table
+from .part_table import PartTable, packed_table, renumbered_table
 from .schema import (
     ARCS,
     CHOICES,
@@ -54,6 +54,7 @@ def store(
     hints: tuple[compute.FunctionHint, ...] = (),
     *,
     place_of_vertex: NDArray[np.int64],
+    swatches: dict[int, int],
 ) -> tuple[str, ...]:
     """Put an analysis on the mesh it was made from, in place of an earlier one, and return warnings for the user.
 
@@ -61,6 +62,8 @@ def store(
     ----------
     place_of_vertex : (V,) int64
         The vertex that stands for each where several lie at one place along a seam.
+    swatches : dict of int to int
+        The place in the palette of the colour of each part.
     """
     earlier = read(mesh)
     part_tree = analysis.part_tree
@@ -72,6 +75,7 @@ def store(
         DESCRIPTION: description,
         SHELLS: analysis.shells,
         **packed_stretch(analysis.stretch),
+        **packed_table(PartTable(swatches=swatches)),
         **kept,
         **corrections.packed_items(items),
         **packed_tree(part_tree),

@@ -1,5 +1,7 @@
 """Colours of parts: distinct for colour-blind people too, on a neutral grey body."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,11 +25,23 @@ def use_colours(colours: list[tuple[float, ...]]) -> None:
     _in_use[:] = colours
 
 
-def colours_of_labels(n_labels: int) -> NDArray[np.float32]:
-    """Return (n_labels, 4) float32 linear RGBA, row 0 the body; the colours repeat after the last."""
+def colours_of_labels(n_labels: int, places: Mapping[int, int] | None = None) -> NDArray[np.float32]:
+    """Return (n_labels, 4) float32 linear RGBA, row 0 the body.
+
+    Parameters
+    ----------
+    n_labels : int
+    places : dict, optional
+        The place of each part's colour among those of the parts, from 0; a part that is not among them has the one of
+        its number. The colours repeat after the last.
+    """
     body, *parts = _in_use
-    rgb = [body, *(parts[label % len(parts)] for label in range(n_labels - 1))][:n_labels]
-    return np.column_stack([np.reshape(rgb, (n_labels, 3)), np.ones(n_labels)]).astype(np.float32)
+    place = np.arange(-1, n_labels - 1)
+    known = {part: place for part, place in (places or {}).items() if 0 < part < n_labels}
+    place[list(known.keys())] = list(known.values())
+    rgb = np.array(parts)[place % len(parts)]
+    rgb[:1] = body
+    return np.column_stack([rgb, np.ones(n_labels)]).astype(np.float32)
 
 
 def srgb_of(linear: NDArray[np.float32]) -> NDArray[np.float32]:

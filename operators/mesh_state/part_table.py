@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from .palette import colours_of_labels
-from .schema import PART_COLOURS, PART_NAMES, PART_NUMBERS
+from .palette import PARTS, colours_of_labels
+from .schema import PART_COLOURS, PART_NAMES, PART_NUMBERS, PART_SWATCHES
 
 BODY = "Body"
 
@@ -33,11 +33,14 @@ class PartTable:
         Those that the user gave.
     colours : dict of int to (float, float, float)
         Those that the user gave, in linear RGB.
+    swatches : dict of int to int
+        The place in the palette of the colour that each part has otherwise.
     """
 
     places: dict[int, tuple[int, int]] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)
     colours: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    swatches: dict[int, int] = field(default_factory=dict)
 
     def name_of(self, part: int) -> str:
         """Return the name of a part: the user's, or one that says where it belongs."""
@@ -56,7 +59,7 @@ class PartTable:
 
     def colours_of(self, n_labels: int) -> NDArray[np.float32]:
         """Return (n_labels, 4) float32 linear RGBA, row 0 the body."""
-        table = colours_of_labels(n_labels)
+        table = colours_of_labels(n_labels, self.swatches)
         for part, colour in self.colours.items():
             if part < n_labels:
                 table[part, :3] = colour
@@ -81,7 +84,10 @@ class PartTable:
 
 
 def renumbered_table(table: PartTable, tracked: Mapping[int, int]) -> PartTable:
-    """Return a table with the numbers that parts have in another analysis; those that are not there are left out."""
+    """Return a table with the numbers that parts have in another analysis; those that are not there are left out.
+
+    The other analysis has swatches of its own.
+    """
     return PartTable(
         places={
             tracked[part]: (tracked[parent], number)
@@ -103,6 +109,17 @@ def number_parts(table: PartTable, parts: compute.Parts) -> PartTable:
     return replace(table, places=places)
 
 
+def with_swatches(table: PartTable, shown: compute.ShownParts) -> PartTable:
+    """Return a table in which no two parts look alike that are shown together, as far as there are colours."""
+    return replace(table, swatches=compute.colour_places([shown], len(PARTS), table.swatches))
+
+
+def with_more_swatches(table: PartTable, parts: compute.Parts) -> PartTable:
+    """Return the table of another mesh's parts with swatches for those that are here alone; all others keep theirs."""
+    shown = compute.ShownParts(tuple(parts.id[parts.id > 0].tolist()))
+    return replace(table, swatches={**with_swatches(table, shown).swatches, **table.swatches})
+
+
 def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str, Any]:
     """Return a table as groups of the state, only those that are not as they were before if that is given."""
     columns: dict[str, Mapping[int, Any]] = {
@@ -110,10 +127,13 @@ def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str,
         PART_NAMES: table.names,
         PART_COLOURS: table.colours,
     }
+    swatches = {PART_SWATCHES: _flat(table.swatches)} if table.swatches else {}
     if before is not None:
         stored = {PART_NUMBERS: before.places, PART_NAMES: before.names, PART_COLOURS: before.colours}
         columns = {name: column for name, column in columns.items() if column != stored[name]}
-    return {name: {str(part): _plain(value) for part, value in column.items()} for name, column in columns.items()}
+        swatches = swatches if table.swatches != before.swatches else {}
+    groups = {name: {str(part): _plain(value) for part, value in column.items()} for name, column in columns.items()}
+    return {**groups, **swatches}
 
 
 def unpacked_table(get: Callable[[str], Any]) -> PartTable:
@@ -125,7 +145,7 @@ def unpacked_table(get: Callable[[str], Any]) -> PartTable:
 
 def unpacked_colours(get: Callable[[str], Any]) -> PartTable:
     """Return a table with the colours alone, likewise."""
-    return PartTable(colours=_rows(get(PART_COLOURS), 3, ("f", "d")))
+    return PartTable(colours=_rows(get(PART_COLOURS), 3, ("f", "d")), swatches=_pairs(get(PART_SWATCHES)))
 
 
 def in_tree_order(parts: compute.Parts) -> Iterator[tuple[int, int]]:
@@ -146,6 +166,17 @@ def in_tree_order(parts: compute.Parts) -> Iterator[tuple[int, int]]:
 def _free_name(name: str, taken: set[str]) -> str:
     candidates = [name, *(f"{name}.{number:03}" for number in range(1, len(taken) + 2))]
     return next(candidate for candidate in candidates if candidate not in taken)
+
+
+def _flat(swatches: Mapping[int, int]) -> list[int]:
+    """Return numbers and places in turn: one array is read at every redraw faster than a group is."""
+    return [number for pair in swatches.items() for number in pair]
+
+
+def _pairs(values: Any) -> dict[int, int]:
+    """Return numbers and places from an array of both in turn; nothing else is read back."""
+    flat = values.to_list() if getattr(values, "typecode", None) == "i" else []
+    return dict(zip(flat[::2], flat[1::2], strict=False))
 
 
 def _plain(value: Any) -> Any:

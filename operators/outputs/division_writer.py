@@ -8,7 +8,7 @@ from ... import compute
 from ..mesh_data.attribute_values import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, write_attributes
 from ..mesh_state import schema
-from ..mesh_state.part_table import PartTable, number_parts, packed_table
+from ..mesh_state.part_table import PartTable, number_parts, packed_table, with_more_swatches, with_swatches
 from ..mesh_state.serialization import packed
 from ..mesh_state.state import MeshState, remember
 from . import output_registry
@@ -41,6 +41,10 @@ def write_parts(
     """
     mesh, of_faces = state.mesh, labels.of_faces(part_tree)
     numbered = number_parts(parts, labels.parts)
+    if isinstance(labels, compute.BranchLabels):
+        numbered = with_swatches(numbered, compute.shown_parts(labels, part_tree))
+    else:
+        numbered = with_more_swatches(numbered, labels.parts)
     tables = packed_table(numbered, state.parts)
     division = division_of(of_faces, numbered, state.softness)
     shown = {schema.LEVEL: labels.level, schema.PARTS: packed(labels.parts)}

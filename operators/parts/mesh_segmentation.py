@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ... import compute
 from ..blender.known_values import mesh_of
 from ..jobs import recent_analyses
-from ..mesh_state import analysis_writer, function_hints, state
+from ..mesh_state import analysis_writer, function_hints, palette, state
 from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
 from ..messages.sentences import Messages
 from ..outputs import output_registry, part_writer
@@ -43,6 +43,8 @@ class AnalysisResult:
     polygon_of_triangle : (T,) int64
     place_of_vertex : (V,) int64
         The vertex that stands for each where several lie at one place along a seam.
+    swatches : dict of int to int
+        The place in the palette of the colour of each part.
     hints : tuple of FunctionHint
     """
 
@@ -53,6 +55,7 @@ class AnalysisResult:
     seconds: float
     polygon_of_triangle: NDArray[np.int64]
     place_of_vertex: NDArray[np.int64]
+    swatches: dict[int, int]
     hints: tuple[compute.FunctionHint, ...] = ()
 
 
@@ -117,7 +120,9 @@ def write(
 def store(mesh: bpy.types.Mesh, result: AnalysisResult) -> tuple[str, ...]:
     """Put an analysis on its mesh without dividing it, and return warnings for the user."""
     return analysis_writer.store(
-        *(mesh, result.stored, result.source, result.description, result.hints), place_of_vertex=result.place_of_vertex
+        *(mesh, result.stored, result.source, result.description, result.hints),
+        place_of_vertex=result.place_of_vertex,
+        swatches=result.swatches,
     )
 
 
@@ -134,6 +139,7 @@ def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) 
         seconds=seconds,
         polygon_of_triangle=given.arrays.polygon_of_triangle,
         place_of_vertex=analysis.surface.vertex_of_input,
+        swatches=compute.places_at_all_levels(part_tree, len(palette.PARTS)),
         hints=compute.judge_eigenfunctions(analysis.eigenbasis) if is_function else (),
     )
 

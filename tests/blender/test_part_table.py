@@ -49,6 +49,37 @@ def test_parts_of_parts_follow_them_and_carry_their_name(nested):
     assert len({row.title for row in listed}) == len(listed)
 
 
+def colours(obj):
+    return {row.part: tuple(row.color) for row in obj.data.eigenparts.rows}
+
+
+def test_parts_keep_their_colours_and_no_two_that_are_shown_look_alike(nested):
+    seen = {}
+    for level in range(nested.data["eigenparts_state"]["hierarchy"]["n_levels"]):
+        nested.data.eigenparts.level = level
+        shown = colours(nested)
+        assert len(set(shown.values())) == len(shown)
+        assert all(seen.setdefault(part, colour) == colour for part, colour in shown.items())
+
+
+def test_a_part_that_is_split_off_and_one_that_is_painted_look_like_no_other(nested):
+    before = colours(nested)
+    first, second = (row.part for row in sorted(nested.data.eigenparts.rows, key=lambda row: -row.n_faces)[:2])
+    bpy.ops.eigenparts.split_part(part=first)
+    bpy.ops.eigenparts.split_part(part=second)
+    after = colours(nested)
+    assert len(after) == len(before) + 2 == len(set(after.values()))
+    assert after.items() >= before.items()
+
+
+def test_swatches_that_make_no_sense_are_passed_over(nested):
+    for wrong in ([2], [0, 3, 5, -7, 1, 2**31 - 1, -4, 2], {"1": 2}, "red", [0.5, 1.5]):
+        nested.data["eigenparts_state"]["part_swatches"] = wrong
+        assert len(colours(nested)) == len(nested.data.eigenparts.rows)
+        bpy.ops.eigenparts.segment(level=3)
+        assert len(set(colours(nested).values())) == len(colours(nested))
+
+
 def test_a_name_never_changes_by_itself(nested):
     at_default = titles(nested)
     nested.data.eigenparts.level = 1000
