@@ -29,6 +29,15 @@ OUTSIDE = {
 # With it loaded, a Python that has Blender as a module may wait for ever at its end (`cli/processes/ending.py`).
 NOWHERE = "scipy.optimize"
 
+# What runs inside Blender, which supports no threads of Python's; the extension site refuses them.
+IN_BLENDER = ("compute", "operators", "ui")
+THREADS = (
+    *("threading", "_thread", "queue", "asyncio", "concurrent"),
+    *("multiprocessing.pool", "multiprocessing.dummy", "multiprocessing.managers", "multiprocessing.queues"),
+)
+# Methods of `sys.path` and `sys.modules` that change nothing.
+READING = ("get", "keys", "values", "items", "copy", "index", "count")
+
 # The rooms of a folder, each of which may import only those that stand before it.
 ORDER = {
     # The path of the data, read from left to right.
@@ -93,6 +102,62 @@ def keeps_order(order: list[str], folder: list[str], importer: tuple[str, ...], 
         return True
     # A folder's own __init__ and __main__ come last.
     return importer[depth].startswith("__") or order.index(importer[depth]) >= order.index(imported[depth])
+
+
+def modules_with_threads(root: Path) -> set[str]:
+    """Return every file of what runs inside Blender that imports threads: Blender supports none of Python's."""
+    files = [root / "__init__.py", *(path for room in IN_BLENDER for path in sorted((root / room).rglob("*.py")))]
+    return {
+        str(path.relative_to(root))
+        for path in files
+        for module in imported_modules(path.relative_to(root).with_suffix("").parts, ast.parse(path.read_text()))
+        if module.startswith(THREADS)
+    }
+
+
+def modules_that_change_imports(root: Path) -> set[str]:
+    """Return every file of what runs inside Blender that has something to do with `sys.modules` or sets `sys.path`."""
+    return {
+        str(path.relative_to(root))
+        for path in [root / "__init__.py", *(path for room in IN_BLENDER for path in (root / room).rglob("*.py"))]
+        if any(changes_imports(node) for node in ast.walk(ast.parse(path.read_text())))
+    }
+
+
+def changes_imports(node: ast.AST) -> bool:
+    """Whether a statement or call changes `sys.path`, `sys.meta_path` or `sys.modules`."""
+    if isinstance(node, ast.Assign | ast.AugAssign | ast.Delete):
+        targets = [node.target] if isinstance(node, ast.AugAssign) else node.targets
+        return any(is_of_imports(target.value if isinstance(target, ast.Subscript) else target) for target in targets)
+    is_method = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+    return is_method and node.func.attr not in READING and is_of_imports(node.func.value)
+
+
+def is_of_imports(node: ast.AST) -> bool:
+    """Whether an expression is one of the variables that decide what is imported."""
+    return ast.unparse(node) in ("sys.path", "sys.meta_path", "sys.modules")
+
+
+def test_nothing_in_blender_imports_threads():
+    assert modules_with_threads(ROOT) == set()
+
+
+def test_nothing_in_blender_changes_what_is_imported():
+    assert modules_that_change_imports(ROOT) == {"operators/jobs/worker_start.py"}
+
+
+@pytest.mark.parametrize("line", ["import threading", "from concurrent.futures import wait", "from queue import Queue"])
+def test_a_thread_is_noticed(tmp_path, line):
+    (tmp_path / "__init__.py").write_text(line)
+    assert modules_with_threads(tmp_path) == {"__init__.py"}
+
+
+@pytest.mark.parametrize(
+    "line", ["sys.path.append('')", "sys.path[:] = []", "sys.modules['bpy'] = 1", "del sys.modules['bpy']"]
+)
+def test_a_changed_path_is_noticed(tmp_path, line):
+    (tmp_path / "__init__.py").write_text(line)
+    assert modules_that_change_imports(tmp_path) == {"__init__.py"}
 
 
 def test_every_import_keeps_its_direction():

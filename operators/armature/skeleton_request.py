@@ -33,7 +33,7 @@ from .skeleton_options import ArmatureOptions, SkeletonOptions
 # How many shapes are remembered by their symmetry.
 RECENT_SYMMETRIES = 8
 # A tuple of one: that a shape has no symmetry is remembered, too.
-_recent_partners: Recent[tuple[NDArray[np.int64] | None]] = Recent(RECENT_SYMMETRIES)
+_recent_partners: Recent[tuple[NDArray[np.int64] | None]] = Recent("symmetries", RECENT_SYMMETRIES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,7 +160,7 @@ def _warnings_of_reference(mesh: bpy.types.Mesh) -> list[str]:
 
 
 def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: compute.Progress) -> NamedSkeleton:
-    """Run the engine; knows nothing of Blender, so any thread may do it."""
+    """Run the engine; knows nothing of Blender, so any process may do it."""
 
     def of_analysis(fraction: float, text: str) -> None:
         progress(0.6 * fraction, text)

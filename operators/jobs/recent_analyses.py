@@ -25,7 +25,7 @@ class EngineOptions(TypedDict):
     shells: str
 
 
-_recent: Recent[compute.Analysis] = Recent(RECENT_VERTICES)
+_recent: Recent[compute.Analysis] = Recent("analyses", RECENT_VERTICES)
 
 
 def analyze(arrays: MeshArrays, options: EngineOptions, progress: compute.Progress) -> compute.Analysis:

@@ -21,8 +21,8 @@ SETTINGS = (
 
 
 def use_threads(n_threads: int) -> int:
-    """Let the matrix libraries use so many cores; return how many libraries heard it."""
-    setters = list(_setters())
+    """Let the matrix libraries use so many cores, as many as they like if 0; return how many libraries heard it."""
+    setters = list(_setters()) if n_threads else []
     for setter in setters:
         setter(n_threads)
     return len(setters)
@@ -40,11 +40,10 @@ def user_preferences() -> Preferences | None:
     return cast(Preferences, addon.preferences) if addon is not None else None
 
 
-def use_preferred_threads() -> None:
-    """Let the matrix libraries use as many cores as the user prefers."""
+def preferred_threads() -> int:
+    """Return how many cores the user wants the matrix libraries to use; 0 leaves that to them."""
     preferences = user_preferences()
-    if preferences is not None and preferences.n_threads:
-        use_threads(preferences.n_threads)
+    return preferences.n_threads if preferences is not None else 0
 
 
 def _setters() -> Iterator[Callable[[int], None]]:

@@ -13,6 +13,8 @@ from .user_errors import refusals_told
 
 OUT_OF_MEMORY = "There is not enough memory for this; try linear elements or a mesh with fewer faces."
 PACKAGE = Path(__file__).parents[2]
+# Where an error of another process keeps its traceback.
+ELSEWHERE = "eigenparts_traceback"
 
 _last: "Fault | None" = None
 
@@ -73,7 +75,13 @@ def traceback_without_folders(error: BaseException) -> str:
     ]
     cause = error.__cause__
     before = [traceback_without_folders(cause), "which led to"] if cause is not None else []
-    return "\n".join([*before, *places, type(error).__name__])
+    elsewhere = getattr(error, ELSEWHERE, "")
+    return "\n".join([*before, *places, elsewhere or type(error).__name__])
+
+
+def keep_traceback(error: Exception, traceback: str) -> None:
+    """Let an error of another process keep its traceback from there."""
+    setattr(error, ELSEWHERE, traceback)
 
 
 def _place(filename: str) -> str:

@@ -45,8 +45,8 @@ class FreshAnalysis(AnalysisRequest):
 
 
 def analyze_topology(given: AnalysisInput, progress: compute.Progress) -> AnalyzedShape:
-    """Return an analysis with its persistence diagram; knows nothing of Blender, so any thread may do it."""
+    """Return an analysis with its persistence diagram; knows nothing of Blender, so any process may do it."""
     analysis = recent_analyses.recall(given.arrays, given.options, progress)
-    # The longer part of the topology is made here, in the thread.
+    # The longer part of the topology is made here, in the worker.
     _ = analysis.diagram
     return AnalyzedShape(analysis, given.arrays.stretch)

@@ -1,6 +1,6 @@
 """Use case: a mesh analyzed and divided into parts, the same from the window, from scripts and on the command line.
 
-``read`` takes what is needed from an object, ``analyze`` computes on values alone, in any thread, and ``write`` puts
+``read`` takes what is needed from an object, ``analyze`` computes on values alone, in any process, and ``write`` puts
 the result on the mesh and returns what is to be told.
 """
 
@@ -81,7 +81,7 @@ def analyze(
     progress: compute.Progress,
     analysis_of: Callable[..., compute.Analysis] = recent_analyses.analyze,
 ) -> AnalysisResult:
-    """Run the engine; knows nothing of Blender, so any thread may do it."""
+    """Run the engine; knows nothing of Blender, so any process may do it."""
     start = time.perf_counter()
     analysis = analysis_of(given.arrays, given.options, progress)
     return result_of(analysis, given, time.perf_counter() - start)

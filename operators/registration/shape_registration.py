@@ -1,4 +1,4 @@
-"""Shapes matched with a reference and divided into its parts; knows nothing of Blender, so any thread may do it."""
+"""Shapes matched with a reference and divided into its parts; knows nothing of Blender, so any process may do it."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ ANALYSIS_SHARE = 0.6
 # Where in the time of registering meshes the first, the next and the last stage end.
 STAGES = (0.0, 0.4, 0.8, 1.0)
 
-_recent_shapes: Recent[MatchableShape] = Recent(RECENT_POINTS)
-_recent_matchings: Recent[compute.Matching] = Recent(RECENT_MATCHINGS)
+_recent_shapes: Recent[MatchableShape] = Recent("shapes", RECENT_POINTS)
+_recent_matchings: Recent[compute.Matching] = Recent("matchings", RECENT_MATCHINGS)
 
 
 @dataclass(frozen=True, eq=False)

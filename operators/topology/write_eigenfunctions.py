@@ -86,7 +86,7 @@ def _attributes_there(mesh: bpy.types.Mesh, n_functions: int) -> tuple[OwnAttrib
 def _functions_on_vertices(
     arrays: mesh_arrays.MeshArrays, n_functions: int, progress: Callable[[float, str], None]
 ) -> VertexFunctions:
-    """Return the smoothest functions; knows nothing of Blender, so any thread may do it."""
+    """Return the smoothest functions; knows nothing of Blender, so any process may do it."""
     mesh = compute.TriangleMesh(arrays.vertices, arrays.triangles)
     basis = compute.solve_eigenbasis(mesh, n_functions, progress=progress)
     values = basis.functions[: len(arrays.vertices)].astype(np.float32)

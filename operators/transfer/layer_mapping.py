@@ -1,4 +1,4 @@
-"""Layers mapped from one shape to others; knows nothing of Blender, so any thread may do it."""
+"""Layers mapped from one shape to others; knows nothing of Blender, so any process may do it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NOT_ALIKE = (
     " image of the other, choose Mirrored."
 )
 
-_recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
+_recent_maps: Recent[ShapeMap] = Recent("maps", RECENT_VERTICES)
 
 
 @dataclass(frozen=True, eq=False)
