@@ -93,12 +93,13 @@ class Job(Generic[Result]):
             self._report(told.fraction, told.text)
         else:
             self._outcome = told
-            worker.used = time.monotonic()
+            worker.is_busy, worker.used = False, time.monotonic()
 
     def _report(self, fraction: float, text: str) -> None:
         self.fraction, self.text = fraction, text
 
     def _hand_over(self, worker: worker_process.WorkerProcess) -> None:
+        worker.is_busy = True
         try:
             parcels.send(worker.channel, self._task, worker.folder)
         except OSError:

@@ -37,6 +37,8 @@ class WorkerProcess:
         Of large arrays and of what was computed last.
     is_ready : bool
         Whether it has told that it takes tasks.
+    is_busy : bool
+        Whether it has one, however long that takes.
     started, used : float
         When it was started, and when it last had work, in the seconds of ``time.monotonic``.
     """
@@ -45,6 +47,7 @@ class WorkerProcess:
     channel: connection.Connection
     folder: Path
     is_ready: bool = False
+    is_busy: bool = False
     started: float = field(default_factory=time.monotonic)
     used: float = field(default_factory=time.monotonic)
 
@@ -104,7 +107,7 @@ def end_session() -> None:
 
 def _end_after_rest() -> float | None:
     """Timer of Blender's: end a worker that rests, and take leave of one that has ended."""
-    if _worker is not None and not (_worker.is_alive and time.monotonic() - _worker.used < REST):
+    if _worker is not None and not (_worker.is_alive and (_worker.is_busy or time.monotonic() - _worker.used < REST)):
         stop_worker()
     return LOOK if _worker is not None else None
 

@@ -131,6 +131,14 @@ def test_a_worker_ends_after_a_rest(jobs, monkeypatch):
     assert process.returncode is not None
 
 
+def test_work_that_takes_longer_than_a_rest_goes_on(jobs, monkeypatch):
+    running = jobs.Job(tasks.sleep_for_ever)
+    wait_for(lambda: running.look() or running.text == "Half way")
+    monkeypatch.setattr(jobs.worker_process, "REST", 0)
+    assert jobs.worker_process._end_after_rest() == jobs.worker_process.LOOK
+    assert not running.look()
+
+
 def test_disabling_the_extension_leaves_no_process_and_no_folder(jobs, extension):
     ended(jobs.Job(partial(tasks.answer, 1)))
     worker = jobs.worker_process.running_worker()

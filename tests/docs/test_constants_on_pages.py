@@ -37,7 +37,7 @@ METHOD = {
     "tearing": f"({map_scoring.USUAL_TEARING:g} + τ)",
     "evidence": f"{map_confidence.CURVATURE_WEIGHT:g} min(ρ, {map_confidence.FULL_AGREEMENT:g})"
     f" - {map_confidence.COST_WEIGHT:g} ln(cost",
-    "doubtful cost": f"(1 + (cost / {power(map_confidence.DOUBTFUL_COST)})^{map_confidence.DOUBT_SHARPNESS:g})",
+    "doubtful cost": f"(1 + cost / {power(map_confidence.DOUBTFUL_COST)})",
     "least cost": f"(cost + {power(map_scoring.LEAST_COST)})",
     "overlap": f"at least {part_matching.LEAST_OVERLAP:g}:",
     "followed": f"follows {IN_WORDS[deformation_graph.FOLLOWED]} of",

@@ -9,9 +9,9 @@ from .map_scoring import LEAST_COST, Candidate
 
 # Log odds of one map against another: for each factor e that it costs less, and for fine curvature that agrees better.
 # Fitted, like the cost below, to pairs whose truth is known (docs/registration.md, "Confidence").
-COST_WEIGHT, CURVATURE_WEIGHT = 3.75, 22.5
-# Cost at which it is as likely that no map is right as that the best is, and how fast that changes with the cost.
-DOUBTFUL_COST, DOUBT_SHARPNESS = 1e-5, 1.5
+COST_WEIGHT, CURVATURE_WEIGHT = 2.5, 15.0
+# Cost at which it is as likely that no map is right as that the best is.
+DOUBTFUL_COST = 1e-5
 # Curvature that agrees better than this says nothing: so it does over the right map between other triangulations.
 FULL_AGREEMENT = 0.9
 
@@ -31,7 +31,7 @@ def evidence_of(candidate: Candidate, curvature: float) -> float:
 
 def fit_of(candidate: Candidate) -> float:
     """Return how likely it is, from 0 to 1, that a map or one of its rivals is right."""
-    return 0.0 if candidate.is_torn else 1 / (1 + (candidate.cost / DOUBTFUL_COST) ** DOUBT_SHARPNESS)
+    return 0.0 if candidate.is_torn else 1 / (1 + candidate.cost / DOUBTFUL_COST)
 
 
 def probabilities(candidates: Sequence[Candidate], evidence: Sequence[float]) -> Floats:
