@@ -30,14 +30,15 @@ from compute.registration.eigenfunctions.spectral_shape import SpectralShape, sp
 from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
 from compute.surface.mesh import Floats, Ints
 
-KINDS = ("remeshed", "decimated", "noised", "cut open")
+CHANGES = ("decimated", "noised", "cut open")
+KINDS = ("remeshed", *CHANGES)
 SCANS = "faust-dev"
+# The scans are each remeshed by themselves, so none is another one's copy as it is.
+AS_SCANNED = "same"
 # Families whose pairs the constants were fitted to, with pairs of different animals by their landmarks; of the scans
 # half of the persons.
 CHOSEN_ON = ("horse", "hand", "makehuman", "shiba", "trex", SCANS)
 N_BINS = 10
-# A matching that is surer is taken for right.
-SURE = 0.5
 # Maps that pictures are made of.
 N_WORST = 5
 # Of the root of the area: how far the nearest point of a changed scan may be from one of the truth.
@@ -67,7 +68,7 @@ class Scan:
 
 def calibration_error(confidence: Floats, is_right: Floats) -> float:
     """Return the expected calibration error: the mean gap between stated and found in ten bins, by their pairs."""
-    bins = np.minimum((confidence * N_BINS).astype(int), N_BINS - 1)
+    bins = _bins_of(confidence)
     found = [number for number in range(N_BINS) if (bins == number).any()]
     gaps = [abs(confidence[bins == number].mean() - is_right[bins == number].mean()) for number in found]
     return float(np.average(gaps, weights=[(bins == number).sum() for number in found]))
@@ -77,7 +78,7 @@ def bins_table(outcomes: Sequence[Outcome]) -> Iterator[str]:
     """Yield a Markdown table of ten bins: confidence stated, share found right."""
     confidence = np.array([one.confidence for one in outcomes])
     is_right = np.array([float(one.is_right) for one in outcomes])
-    bins = np.minimum((confidence * N_BINS).astype(int), N_BINS - 1)
+    bins = _bins_of(confidence)
     yield "| confidence | pairs | stated, mean | right |"
     yield "|---|---|---|---|"
     for number in range(N_BINS):
@@ -89,6 +90,10 @@ def bins_table(outcomes: Sequence[Outcome]) -> Iterator[str]:
     yield f"Expected calibration error: {calibration_error(confidence, is_right):.3f}."
 
 
+def _bins_of(confidence: Floats) -> Ints:
+    return np.minimum((confidence * N_BINS).astype(int), N_BINS - 1)
+
+
 def families_table(outcomes: Sequence[Outcome]) -> Iterator[str]:
     """Yield a Markdown table with a row for each family."""
     yield "| family | pairs | right | left for right | otherwise wrong | sure | sure and wrong | distance | CPU s |"
@@ -98,7 +103,7 @@ def families_table(outcomes: Sequence[Outcome]) -> Iterator[str]:
         wrong = [one for one in own if not one.is_right]
         n_mirrored = sum(one.mirrored >= MOST_MIRRORED for one in wrong)
         counts = (len(own), len(own) - len(wrong), n_mirrored, len(wrong) - n_mirrored)
-        sure = (sum(one.confidence > SURE for one in own), sum(one.confidence > SURE for one in wrong))
+        sure = (sum(one.is_sure for one in own), sum(one.is_sure for one in wrong))
         means = f"{100 * np.mean([one.distance for one in own]):.1f} | {np.mean([one.seconds for one in own]):.2f}"
         yield f"| {family} | {' | '.join(map(str, counts + sure))} | {means} |"
 
@@ -114,9 +119,7 @@ def load_scans(data: Path, kind: str) -> list[Scan]:
     scans = []
     for path in sorted(folder.glob("*.off")):
         mesh = read_mesh(path)
-        # The scans are each remeshed by themselves already.
-        changed = mesh if kind == "remeshed" else COPIES[kind](mesh)
-        basis = analyze(changed, n_functions=2).matching_basis
+        basis = analyze(COPIES[kind](mesh), n_functions=2).matching_basis
         shape = spectral_shape(basis)
         tree = cKDTree(basis.nodes[shape.node])
         lines = [np.loadtxt(folder / "corres" / f"{path.stem}{side}.vts", dtype=int) - 1 for side in ("", ".sym")]
@@ -130,7 +133,7 @@ def run_scans(scans: dict[str, list[Scan]], ledger: Ledger) -> None:
     for kind, targets in scans.items():
         for first, second in permutations(range(len(targets)), 2):
             if not ledger.has(OURS, SCANS, kind, (first, second)):
-                ledger.add(_scan_outcome(scans["remeshed"][first], targets[second], kind, (first, second)))
+                ledger.add(_scan_outcome(scans[AS_SCANNED][first], targets[second], kind, (first, second)))
 
 
 def _scan_outcome(source: Scan, target: Scan, kind: str, number: tuple[int, int]) -> Outcome:
@@ -138,10 +141,10 @@ def _scan_outcome(source: Scan, target: Scan, kind: str, number: tuple[int, int]
     start = time.process_time()
     matching = match_shapes(here, there)
     seconds = time.process_time() - start
-    size, queries = JUDGED_FUNCTIONS + 1, target.places[target.is_there]
+    size, queries = JUDGED_FUNCTIONS, target.places[target.is_there]
     places, images = source.places[target.is_there], source.images[target.is_there]
-    truth = np.linalg.lstsq(there.functions[queries, :N_CARRYING], here.functions[places, :size], rcond=None)[0]
-    error = np.linalg.norm(matching.map[: size - 1, : size - 1] - truth[1:size, 1:]) / np.sqrt(size - 1)
+    truth = np.linalg.lstsq(there.functions[queries, :N_CARRYING], here.functions[places, : size + 1], rcond=None)[0]
+    error = np.linalg.norm(matching.map[:size, :size] - truth[1 : size + 1, 1:]) / np.sqrt(size)
     landed = here.positions[nearest_points(with_constant(matching.map), here.functions, there.functions[queries])]
     off, to_image = (np.linalg.norm(landed - here.positions[where], axis=1) for where in (places, images))
     mirrored = float(((to_image < off) & (off > 0.15)).mean())
@@ -152,7 +155,7 @@ def draw_worst(ledger: Ledger, scans: dict[str, list[Scan]], judged: Sequence[Fa
     """Draw the worst maps."""
     for number, one in enumerate(worst(ledger.outcomes, N_WORST)):
         if one.family == SCANS:
-            shapes = [scans[kind][place].shape for kind, place in zip(("remeshed", one.kind), one.poses, strict=True)]
+            shapes = [scans[kind][place].shape for kind, place in zip((AS_SCANNED, one.kind), one.poses, strict=True)]
         else:
             family = next(family for family in judged if family.name == one.family)
             shapes = [copy.shape for copy in family.copies(one.kind, one.poses)]
@@ -173,16 +176,16 @@ def main() -> None:
     arguments.cache.mkdir(parents=True, exist_ok=True)
     print(versions_of("numpy", "scipy", "pymeshlab") + "\n", flush=True)
     ledger = Ledger(arguments.outcomes)
-    scans = {kind: load_scans(arguments.data, kind) for kind in KINDS}
+    scans = {kind: load_scans(arguments.data, kind) for kind in (AS_SCANNED, *CHANGES)}
     run_scans(scans, ledger)
     judged = list(families(arguments.data, arguments.families.split(","), arguments.cache))
     for family in judged:
         run_family(family, KINDS, arguments.pairs, 0, ledger)
     for name, chosen in (("Judged on", False), ("Chosen on", True)):
         outcomes = [one for one in ledger.outcomes if (one.family in CHOSEN_ON) == chosen]
-        print(f"\n{name}:\n")
-        for table in (families_table, bins_table):
-            print("\n".join(table(outcomes)) + "\n", flush=True)
+        if outcomes:
+            tables = (families_table(outcomes), bins_table(outcomes))
+            print(f"\n{name}:\n\n" + "\n\n".join("\n".join(table) for table in tables) + "\n", flush=True)
     if arguments.pictures is not None:
         draw_worst(ledger, scans, judged, arguments.pictures)
 

@@ -1,5 +1,6 @@
 """Pictures of maps: the source coloured by its places, and the target with the colours of where it lands."""
 
+from itertools import product
 from pathlib import Path
 
 import matplotlib as mpl
@@ -19,22 +20,21 @@ VIEWS = ((1, "front"), (-1, "back"))
 LIGHT, DARK = 0.75, 0.25
 
 
-def draw_map(source: SpectralShape, target: SpectralShape, path: Path) -> Path:
-    """Match two shapes, draw the map and return the path of the picture."""
+def draw_map(source: SpectralShape, target: SpectralShape, path: Path) -> None:
+    """Match two shapes and draw the map."""
     matching = match_shapes(source, target)
     landed = nearest_points(with_constant(matching.map), source.functions, target.functions)
     extent = np.ptp(source.positions, axis=0)
     colours = (source.positions - source.positions.min(axis=0)) / extent
     figure, places = plt.subplots(1, 2 * len(VIEWS), figsize=(16, 6))
-    for row, (shape, own, name) in enumerate(((source, colours, "source"), (target, colours[landed], "target"))):
-        for column, (side, view) in enumerate(VIEWS):
-            _draw(places[len(VIEWS) * row + column], shape, own, side)
-            places[len(VIEWS) * row + column].set_title(f"{name}, {view}")
+    drawn = ((source, colours, "source"), (target, colours[landed], "target"))
+    for place, ((shape, own, name), (side, view)) in zip(places, product(drawn, VIEWS), strict=True):
+        _draw(place, shape, own, side)
+        place.set_title(f"{name}, {view}")
     figure.suptitle(f"{path.stem}, confidence {matching.confidence:.2f}")
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=80, bbox_inches="tight")
     plt.close(figure)
-    return path
 
 
 def _draw(place: plt.Axes, shape: SpectralShape, colours: Floats, side: int) -> None:

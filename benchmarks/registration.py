@@ -37,6 +37,8 @@ from compute.surface.mesh import Ints, TriangleMesh
 # and less than this share of the area lands on the mirrored side.
 LARGEST_ERROR = 0.3
 MOST_MIRRORED = 0.05
+# A matching that is surer is taken for right.
+SURE = 0.5
 KINDS = ("remeshed", "decimated", "same")
 OURS = "Eigenparts"
 KIN = (
@@ -68,6 +70,11 @@ class Outcome:
     def is_right(self) -> bool:
         """Whether the functions and the sides are those of the truth."""
         return self.error <= LARGEST_ERROR and self.mirrored < MOST_MIRRORED
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the map is said to be right rather than wrong."""
+        return self.confidence > SURE
 
 
 class Ledger:
@@ -180,7 +187,7 @@ def table(outcomes: list[Outcome]) -> Iterator[str]:
 
 def _row(name: str, outcomes: list[Outcome]) -> str:
     hard = [one for one in outcomes if one.kind != "same"]
-    sure = [one for one in hard if one.confidence > 0.5]
+    sure = [one for one in hard if one.is_sure]
     seconds = [one.seconds for one in hard]
     cells = (
         name,
@@ -216,7 +223,7 @@ def peer_table(outcomes: list[Outcome]) -> Iterator[str]:
 def failures(outcomes: list[Outcome]) -> Iterator[str]:
     """Yield a line for each pair of ours that is wrong or not sure."""
     for one in outcomes:
-        if one.method == OURS and (not one.is_right or one.confidence <= 0.5):
+        if one.method == OURS and not (one.is_right and one.is_sure):
             verdict = "right" if one.is_right else "WRONG"
             yield (
                 f"- {one.family} {one.poses[0]} to {one.poses[1]}, {one.kind}: {verdict}, map error {one.error:.2f},"

@@ -98,7 +98,7 @@ def damage_attribute(mesh, name, kind):
     if kind in ("gone", "other type", "other domain"):
         mesh.attributes.remove(attribute)
     if kind == "other type":
-        mesh.attributes.new(name, "FLOAT_COLOR", domain)
+        mesh.attributes.new(name, "FLOAT_VECTOR" if data_type != "FLOAT_VECTOR" else "FLOAT_COLOR", domain)
     if kind == "other domain":
         mesh.attributes.new(name, data_type, "CORNER" if domain != "CORNER" else "POINT")
     if kind in ("huge", "negative", "no numbers", "shuffled", "zero"):

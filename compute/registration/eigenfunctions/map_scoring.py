@@ -116,8 +116,8 @@ class MapScorer:
     ----------
     source, target : SpectralShape
     n_samples : int, optional
-        How many samples of either to use, of all that there are; they are spread as evenly. A half of them finds the
-        same maps, a little less exactly, at a third of the cost.
+        How many samples of either to use, of all that there are; they are spread as evenly. Fewer make rougher maps,
+        sooner.
     """
 
     def __init__(self, source: SpectralShape, target: SpectralShape, n_samples: int | None = None) -> None:

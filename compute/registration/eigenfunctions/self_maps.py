@@ -70,11 +70,12 @@ def find_rivals(best_first: Sequence[Candidate], self_maps: Sequence[Floats]) ->
     self_maps : sequence of (k, k) float64
         Of the source, best first. Those of the target make the same rivals, as far as the shapes are alike.
     """
+    rivalled = distinct_candidates(best_first, MAX_RIVALLED)
     tried = [candidate.functional_map for candidate in best_first]
     level, size = len(best_first[0].start), len(tried[0])
     rivals: list[Floats] = []
     for turn in self_maps:
-        for candidate in distinct_candidates(best_first, MAX_RIVALLED):
+        for candidate in rivalled:
             rival = candidate.functional_map @ turn[:size, :size]
             if all(distance_of(rival, other) > SAME_MAP for other in tried):
                 tried.append(rival)
