@@ -14,11 +14,12 @@ from .. import compute
 from ..compute.errors import EngineError
 from ..compute.progress import silent
 from ..operators.blender.known_values import mesh_of
-from ..operators.messages.user_errors import Refusal
-from ..operators.registration import mesh_registration, shape_registration
-from ..operators.registration.match_options import MatchOptions
+from ..operators.registration import mesh_registration
 from ..operators.registration.mesh_registration import SharedParts
-from ..operators.registration.shape_registration import MatchableShape, PreparedReference
+from ..tasks import shape_registration
+from ..tasks.match_options import MatchOptions
+from ..tasks.refusals import Refusal
+from ..tasks.shape_registration import MatchableShape, PreparedReference
 from . import formats
 from .formats import OpenFile
 from .formats.points import points_of, settings_of_points

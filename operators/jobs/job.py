@@ -7,11 +7,13 @@ from collections.abc import Callable
 from typing import Generic, TypeVar, cast
 
 from ...compute.progress import Progress, silent
-from ..messages.unexpected_errors import keep_traceback
-from ..messages.user_errors import Refusal
-from . import parcels, worker_process
-from .threads import preferred_threads, use_threads
-from .worker_loop import Answer, Failure, Report, Task
+from ...tasks import parcels
+from ...tasks.refusals import Refusal
+from ...tasks.threads import use_threads
+from ...tasks.tracebacks import keep_traceback
+from ...tasks.worker_loop import Answer, Failure, Report, Task
+from . import worker_process
+from .user_preferences import preferred_threads
 
 Result = TypeVar("Result")
 

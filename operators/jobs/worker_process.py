@@ -16,10 +16,10 @@ from typing import Any
 
 import bpy
 
-from .threads import PACKAGE
+from .user_preferences import PACKAGE
 
-START_FILE = Path(__file__).with_name("worker_start.py")
 ROOT = Path(__file__).parents[2]
+START_FILE = ROOT / "tasks" / "worker_start.py"
 # Seconds without work after which a worker ends, and between looks whether it should.
 REST, LOOK = 300.0, 5.0
 

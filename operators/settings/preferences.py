@@ -7,7 +7,7 @@ import bpy
 from ..blender.known_values import present
 from ..blender.outcome import Outcome
 from ..blender.typed_properties import FloatVectorProperty, IntProperty, TypedProperties
-from ..jobs.threads import PACKAGE, user_preferences
+from ..jobs.user_preferences import PACKAGE, user_preferences
 from ..mesh_state import palette
 from ..outputs import recolouring
 

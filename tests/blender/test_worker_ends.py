@@ -50,9 +50,10 @@ def analyze(extension, star_object):
     """The work of Analyze on the star, and what writes its result."""
     from eigenparts.operators.parts import mesh_segmentation
     from eigenparts.operators.parts.analysis_settings import SETTINGS, AnalysisSettings
+    from eigenparts.tasks import mesh_analysis
 
     settings = AnalysisSettings(**{name: getattr(bpy.context.scene.eigenparts, name) for name in SETTINGS})
-    return partial(mesh_segmentation.analyze, mesh_segmentation.read(bpy.context, star_object, settings))
+    return partial(mesh_analysis.analyze, mesh_segmentation.read(bpy.context, star_object, settings))
 
 
 def told_by(running):
@@ -110,7 +111,7 @@ def test_an_analysis_with_hardly_any_memory_ends_in_a_sentence(jobs, analyze, st
 
 
 def test_analyses_outlive_the_worker(jobs, analyze):
-    from eigenparts.operators.jobs import recent_analyses
+    from eigenparts.tasks import recent_analyses
 
     keeping = partial(analyze, analysis_of=recent_analyses.analyze_and_keep)
     ended(jobs.Job(partial(tasks.end_at_report, 0, keeping)))

@@ -1,8 +1,11 @@
-"""What the worker computes is what Blender computes for scripts, bit by bit."""
+"""What the worker computes is what Blender computes for scripts, bit by bit, and without any module of Blender."""
+
+from functools import partial
 
 import bpy
 import pytest
 
+from tests.blender import worker_tasks as tasks
 from tests.blender.conftest import add_object
 from tests.blender.test_background import ended
 
@@ -18,6 +21,7 @@ def in_worker(extension, monkeypatch):
     def execute(self, context):
         with refusals_told(self):
             work, handle = self.begin(context)
+            assert ended(job.Job(partial(tasks.modules_of_blender, work))).result() == []
             return self.finish(context, handle, bits_compared(work, ended(job.Job(work)).result()))
         return {"CANCELLED"}
 

@@ -95,8 +95,11 @@ def add_one(arrays, progress):
     return arrays
 
 
-def names_of_modules(progress):
-    """Return where bpy comes from, and whether the path is Blender's."""
-    import bpy
+def path_of_imports(progress):
+    return list(sys.path)
 
-    return type(bpy).__name__, list(sys.path)
+
+def modules_of_blender(work, progress):
+    """Do some work, and return which modules of Blender that took."""
+    work(progress)
+    return sorted({"bmesh", "bpy", "gpu", "mathutils"} & set(sys.modules))

@@ -1,4 +1,4 @@
-"""Shapes matched with a reference and divided into its parts; knows nothing of Blender, so any process may do it."""
+"""Shapes matched with a reference and divided into its parts."""
 
 from __future__ import annotations
 
@@ -9,15 +9,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ... import compute
-from ..jobs import recent_analyses
-from ..jobs.recent_results import Recent, key_of
-from ..mesh_state.stored_analysis import StoredAnalysis
-from ..messages.user_errors import Refusal, in_name_of
-from ..outputs.level_choice import LevelChoice
-from ..parts.analysis_settings import AnalysisInput
-from ..parts.mesh_segmentation import AnalysisResult, result_of
+from .. import compute
+from . import recent_analyses
+from .level_choice import LevelChoice
 from .match_options import MatchOptions
+from .mesh_analysis import AnalysisInput, AnalysisResult, StoredAnalysis, result_of
+from .recent_results import Recent, key_of
+from .refusals import Refusal, in_name_of
 
 CORRECTED_BEFORE = (
     "{} was corrected by hand, and then edited, cut or analyzed with other settings; "

@@ -15,12 +15,12 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from ... import compute
-from ...compute.memory import claim_buffers
-from ...compute.progress import Progress
-from ..messages.unexpected_errors import traceback_without_folders
+from .. import compute
+from ..compute.memory import claim_buffers
+from ..compute.progress import Progress
 from . import parcels, recent_results
 from .threads import use_threads
+from .tracebacks import traceback_without_folders
 
 # Least seconds between two reports of progress.
 INTERVAL = 0.1

@@ -4,13 +4,6 @@ import ctypes
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Protocol, cast
-
-import bpy
-
-from ..blender.known_values import present
-
-PACKAGE = __package__.rsplit(".", 2)[0]
 
 # Where their wheels keep the library, beside the package and inside it, and what the setting is called there.
 FOLDERS = ("../{package}.libs", ".dylibs")
@@ -26,24 +19,6 @@ def use_threads(n_threads: int) -> int:
     for setter in setters:
         setter(n_threads)
     return len(setters)
-
-
-class Preferences(Protocol):
-    """The preferences, as far as they are read before they are registered."""
-
-    n_threads: int
-
-
-def user_preferences() -> Preferences | None:
-    """Return what the user prefers; None where Eigenparts is not installed as an extension, such as in a script."""
-    addon = present(bpy.context.preferences).addons.get(PACKAGE)
-    return cast(Preferences, addon.preferences) if addon is not None else None
-
-
-def preferred_threads() -> int:
-    """Return how many cores the user wants the matrix libraries to use; 0 leaves that to them."""
-    preferences = user_preferences()
-    return preferences.n_threads if preferences is not None else 0
 
 
 def _setters() -> Iterator[Callable[[int], None]]:

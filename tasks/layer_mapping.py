@@ -1,4 +1,4 @@
-"""Layers mapped from one shape to others; knows nothing of Blender, so any process may do it."""
+"""Layers mapped from one shape to others."""
 
 from __future__ import annotations
 
@@ -9,16 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import compute
-from ..jobs import recent_analyses
-from ..jobs.recent_results import Recent, key_of
-from ..mesh_data.mesh_arrays import MeshArrays
-from ..mesh_data.unfinished_meshes import unfinished
-from ..mesh_state.part_table import PartTable
-from ..messages.user_errors import Refusal, in_name_of
-from ..registration.match_options import MatchOptions
-from . import layers
+from .. import compute
+from . import layers, recent_analyses
 from .layers import Layer
+from .match_options import MatchOptions
+from .mesh_shape import MeshArrays
+from .recent_results import Recent, key_of
+from .refusals import Refusal, in_name_of
 
 # What an analysis needs for matching.
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
@@ -44,12 +41,12 @@ class ShapeParts:
     ----------
     of_polygon : (F,) int32
         Number of the part of each face.
-    table : PartTable
-        Their names.
+    names : dict of int to str
+        Of each that it shows.
     """
 
     of_polygon: NDArray[np.int32]
-    table: PartTable
+    names: Mapping[int, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +64,8 @@ class TransferShape:
         Vertex and face of each corner.
     options : MatchOptions
         How a target is matched with the source.
-    modifiers : tuple of str
-        Names of those that add to the mesh, so that its shape is not the one that is seen.
+    unfinished : str
+        What is told of its modifiers if it is not matched well; empty if none of them adds to it.
     parts : ShapeParts, optional
     """
 
@@ -78,7 +75,7 @@ class TransferShape:
     corner_vertex: NDArray[np.int64]
     corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
-    modifiers: tuple[str, ...] = ()
+    unfinished: str = ""
     parts: ShapeParts | None = None
 
     @property
@@ -139,7 +136,7 @@ class MappedLayers:
 
 
 def map_to_all(
-    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: compute.Progress
+    source: TransferShape, given: list[Layer], targets: list[TransferShape], progress: compute.Progress, *, fills: bool
 ) -> list[MappedLayers]:
     """Return the layers that each target gets.
 
@@ -271,7 +268,7 @@ def _mapped(
 
 def _unfinished(*shapes: TransferShape) -> tuple[str, ...]:
     """Return a sentence about each shape whose modifiers add to it."""
-    return tuple(sentence for shape in shapes if (sentence := unfinished(shape.name, shape.modifiers)))
+    return tuple(shape.unfinished for shape in shapes if shape.unfinished)
 
 
 def _unsure_parts(
@@ -286,7 +283,7 @@ def _unsure_parts(
     part, unsure = part // len(is_unsure), is_unsure[vertex[first]]
     share = np.bincount(part, unsure) / np.maximum(np.bincount(part), 1)
     unsure_parts = [int(number) for number in np.argsort(-share, kind="stable") if share[number] > FEW_UNSURE]
-    return {parts.table.name_of(number): float(share[number]) for number in unsure_parts}
+    return {parts.names[number]: float(share[number]) for number in unsure_parts}
 
 
 class _LayerMapper:
