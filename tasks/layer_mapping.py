@@ -16,6 +16,7 @@ from .match_options import MatchOptions
 from .mesh_shape import MeshArrays
 from .recent_results import Recent, key_of
 from .refusals import Refusal, in_name_of
+from .shared_calls import run_all
 
 # What an analysis needs for matching.
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
@@ -164,19 +165,29 @@ def _new_maps(
     source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
 ) -> dict[str, ShapeMap]:
     # All are analyzed first: what cannot be is told before the longer part begins.
-    first, *others = _steps(compute.section(progress, 0, 0.3), 1 + len(targets))
-    source_analysis = _analyze(source, first, recent_analyses.recall)
-    analyses = [
-        _analyze(target, step, recent_analyses.reuse) for target, step in zip(targets.values(), others, strict=True)
+    first, others, mapping = (compute.section(progress, *ends) for ends in ((0, 0.1), (0.1, 0.3), (0.3, 0.95)))
+    of_source = _analyze(source, recent_analyses.recall, first)
+    analyses = run_all(_analyze, [(target, recent_analyses.reuse) for target in targets.values()], others)
+    pairs = [
+        (key, source, target, of_source, analysis)
+        for (key, target), analysis in zip(targets.items(), analyses, strict=True)
     ]
-    maps = {}
-    steps = _steps(compute.section(progress, 0.3, 0.95), len(targets))
-    for (key, target), analysis, step in zip(targets.items(), analyses, steps, strict=True):
-        correspondence = _correspond(source, target, source_analysis, analysis, compute.naming(step, target.name))
-        places = analysis.surface.vertex_of_input
-        maps[key] = ShapeMap(correspondence, places, source_analysis.warnings, analysis.warnings)
-        _recent_maps.put(key, maps[key], len(target.arrays.vertices))
-    return maps
+    return dict(zip(targets, run_all(_new_map, pairs, mapping), strict=True))
+
+
+def _new_map(
+    key: str,
+    source: TransferShape,
+    target: TransferShape,
+    of_source: compute.Analysis,
+    of_target: compute.Analysis,
+    progress: compute.Progress,
+) -> ShapeMap:
+    correspondence = _correspond(source, target, of_source, of_target, compute.naming(progress, target.name))
+    places = of_target.surface.vertex_of_input
+    new = ShapeMap(correspondence, places, of_source.warnings, of_target.warnings)
+    _recent_maps.put(key, new, len(target.arrays.vertices))
+    return new
 
 
 def _key_of_map(source: TransferShape, target: TransferShape) -> str:
@@ -185,11 +196,6 @@ def _key_of_map(source: TransferShape, target: TransferShape) -> str:
     return key_of(
         [*places, options.mirrored, sorted(options.flips.items()), options.alternative, *options.points.vertices]
     )
-
-
-def _steps(progress: compute.Progress, number: int) -> list[compute.Progress]:
-    """Return callbacks whose 0..1 are equal steps, one after the other."""
-    return [compute.section(progress, k / number, (k + 1) / number) for k in range(number)]
 
 
 def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
@@ -209,7 +215,7 @@ def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
 
 
 def _analyze(
-    shape: TransferShape, progress: compute.Progress, analysis_of: Callable[..., compute.Analysis]
+    shape: TransferShape, analysis_of: Callable[..., compute.Analysis], progress: compute.Progress
 ) -> compute.Analysis:
     """Return an analysis that is just enough for matching."""
     with in_name_of(shape.name):

@@ -7,6 +7,7 @@ the worker that comes after one that was ended.
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
 from collections import OrderedDict
 from collections.abc import Iterable
@@ -63,7 +64,8 @@ class Recent(Generic[Value]):
         # A full disk, or an object that only the memory holds, keeps nobody from the result.
         with suppress(OSError, MemoryError, pickle.PicklingError):
             folder.mkdir(parents=True, exist_ok=True)
-            started = folder / f"{key}.started"
+            # Two processes may keep the same.
+            started = folder / f"{key}.{os.getpid()}.started"
             with started.open("wb") as file:
                 pickle.dump((value, size), file, protocol=5)
             started.replace(folder / key)

@@ -8,19 +8,19 @@ import shutil
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
 
 from .. import compute
 from ..compute.memory import claim_buffers
 from ..compute.progress import Progress
-from . import parcels, recent_results
+from . import parcels, recent_results, shared_calls
+from .shared_calls import Sharing
 from .threads import use_threads
 from .tracebacks import traceback_without_folders
+from .worker_messages import Answer, Failure, Ready, Report
 
 # Least seconds between two reports of progress.
 INTERVAL = 0.1
@@ -30,48 +30,18 @@ RECENT = "recent"
 SET_PARENT_DEATH_SIGNAL = 1
 
 
-@dataclass(frozen=True, eq=False)
-class Task:
-    """Work, and how many cores its matrix libraries use; 0 leaves that to them."""
-
-    work: Callable[[Progress], Any]
-    n_threads: int = 0
-
-
-@dataclass(frozen=True)
-class Report:
-    """How far a task is, 0 to 1, and what is being done."""
-
-    fraction: float
-    text: str
-
-
-@dataclass(frozen=True, eq=False)
-class Answer:
-    """What a task returned."""
-
-    result: Any
-
-
-@dataclass(frozen=True, eq=False)
-class Failure:
-    """What a task raised, and where, without folders of the user's."""
-
-    error: Exception
-    traceback: str
-
-
-def serve(channel: Connection, folder: str) -> None:
+def serve(channel: Connection, folder: str, is_helper: bool) -> None:
     """Say that the worker is ready, and answer tasks; the folder goes with Blender."""
     place = Path(folder)
     recent_results.keep_in(place / RECENT)
     # Blender has closed the connection, or is gone.
     with suppress(EOFError, OSError):
         _load_engine()
-        channel.send(None)
+        parcels.send(channel, Ready(), place)
         while True:
             _send(channel, _next_answer(channel, place), place)
-    shutil.rmtree(place, ignore_errors=True)
+    if not is_helper:
+        shutil.rmtree(place, ignore_errors=True)
 
 
 def _load_engine() -> None:
@@ -87,6 +57,7 @@ def _next_answer(channel: Connection, folder: Path) -> Answer | Failure:
         task = parcel.unpacked()
         with _ended_with_blender():
             use_threads(task.n_threads)
+            shared_calls.share(Sharing(task.n_processes, task.n_threads, folder))
             return Answer(task.work(_reporter(channel, folder)))
     except Exception as error:
         # Whatever it is, it is raised again in Blender.

@@ -29,10 +29,10 @@ def _channel(handle: int) -> connection.Connection:
 def main(handle: int) -> None:
     """Serve Blender until it closes the connection."""
     channel = _channel(handle)
-    package, root, path, folder = channel.recv()
+    package, root, path, folder, is_helper = channel.recv()
     sys.path[:] = path
     _add_package(package, root)
-    importlib.import_module(f"{package}.tasks.worker_loop").serve(channel, folder)
+    importlib.import_module(f"{package}.tasks.worker_loop").serve(channel, folder, is_helper)
 
 
 if __name__ == "__main__":

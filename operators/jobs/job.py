@@ -7,13 +7,13 @@ from collections.abc import Callable
 from typing import Generic, TypeVar, cast
 
 from ...compute.progress import Progress, silent
-from ...tasks import parcels
+from ...tasks.processes import WorkerProcess
 from ...tasks.refusals import Refusal
 from ...tasks.threads import use_threads
 from ...tasks.tracebacks import keep_traceback
-from ...tasks.worker_loop import Answer, Failure, Report, Task
+from ...tasks.worker_messages import Answer, Failure, Ready, Report, Task, Told
 from . import worker_process
-from .user_preferences import preferred_threads
+from .user_preferences import preferred_processes, preferred_threads
 
 Result = TypeVar("Result")
 
@@ -41,9 +41,9 @@ class Job(Generic[Result]):
     def __init__(self, work: Callable[[Progress], Result]) -> None:
         self._report(0.0, "Starting")
         self.is_cancelled = False
-        self._task = Task(work, preferred_threads())
+        self._task = Task(work, preferred_threads(), preferred_processes())
         self._outcome: Answer | Failure | None = None
-        self._worker: worker_process.WorkerProcess | None = None
+        self._worker: WorkerProcess | None = None
         try:
             self._worker = worker_process.running_worker()
         except OSError:
@@ -63,7 +63,7 @@ class Job(Generic[Result]):
             return True
         try:
             while self._outcome is None and worker.channel.poll():
-                self._take_in(_told(worker), worker)
+                self._take_in(worker.told(), worker)
         except (EOFError, OSError):
             self._lose(worker)
         if not worker.is_ready and time.monotonic() - worker.started > START:
@@ -87,8 +87,8 @@ class Job(Generic[Result]):
         assert self._outcome is not None
         return cast(Result, self._outcome.result)
 
-    def _take_in(self, told: Report | Answer | Failure | None, worker: worker_process.WorkerProcess) -> None:
-        if told is None:
+    def _take_in(self, told: Told, worker: WorkerProcess) -> None:
+        if isinstance(told, Ready):
             worker.is_ready = True
             self._hand_over(worker)
         elif isinstance(told, Report):
@@ -100,24 +100,16 @@ class Job(Generic[Result]):
     def _report(self, fraction: float, text: str) -> None:
         self.fraction, self.text = fraction, text
 
-    def _hand_over(self, worker: worker_process.WorkerProcess) -> None:
-        worker.is_busy = True
+    def _hand_over(self, worker: WorkerProcess) -> None:
         try:
-            parcels.send(worker.channel, self._task, worker.folder)
+            worker.hand_over(self._task)
         except OSError:
             self._lose(worker)
 
-    def _lose(self, worker: worker_process.WorkerProcess) -> None:
+    def _lose(self, worker: WorkerProcess) -> None:
         """Take leave of a worker that has ended; one that was never ready leaves the work to Blender."""
         worker_process.stop_worker()
         if worker.is_ready:
             self._outcome = Failure(Refusal(ENDED), "")
         else:
             self._worker = None
-
-
-def _told(worker: worker_process.WorkerProcess) -> Report | Answer | Failure | None:
-    """Return what a worker tells; first of all None, that it is ready."""
-    if not worker.is_ready:
-        return cast(None, worker.channel.recv())
-    return cast(Report | Answer | Failure, parcels.receive(worker.channel).unpacked())

@@ -4,63 +4,20 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
-from contextlib import suppress
-from dataclasses import dataclass, field
-from multiprocessing import connection
 from pathlib import Path
-from typing import Any
 
 import bpy
 
-from .user_preferences import PACKAGE
+from ...tasks import processes
+from ...tasks.processes import WorkerProcess
 
-ROOT = Path(__file__).parents[2]
-START_FILE = ROOT / "tasks" / "worker_start.py"
 # Seconds without work after which a worker ends, and between looks whether it should.
 REST, LOOK = 300.0, 5.0
-
-
-@dataclass(eq=False)
-class WorkerProcess:
-    """A process that computes for this Blender.
-
-    Attributes
-    ----------
-    process : Popen
-    channel : Connection
-        To be polled; whatever ends the process closes it.
-    folder : Path
-        Of large arrays and of what was computed last.
-    is_ready : bool
-        Whether it has told that it takes tasks.
-    is_busy : bool
-        Whether it has one, however long that takes.
-    started, used : float
-        When it was started, and when it last had work, in the seconds of ``time.monotonic``.
-    """
-
-    process: subprocess.Popen[bytes]
-    channel: connection.Connection
-    folder: Path
-    is_ready: bool = False
-    is_busy: bool = False
-    started: float = field(default_factory=time.monotonic)
-    used: float = field(default_factory=time.monotonic)
-
-    @property
-    def is_alive(self) -> bool:
-        """Whether the process has not ended; one that has is taken leave of by this."""
-        return self.process.poll() is None
-
-    def kill(self) -> None:
-        """End the process, whatever it does, and wait for that: some milliseconds."""
-        self.process.kill()
-        self.process.wait()
-        self.channel.close()
+# Of the names of folders, before the number of the Blender.
+PREFIX = "eigenparts-"
 
 
 _worker: WorkerProcess | None = None
@@ -79,7 +36,8 @@ def running_worker() -> WorkerProcess:
     if _worker is not None and not _worker.is_alive:
         stop_worker()
     if _worker is None:
-        _worker = _start(_session_folder())
+        command = [sys.executable, *getattr(bpy.app, "python_args", ()), "-P", str(processes.START_FILE)]
+        _worker = processes.start(command, _session_folder())
         if not bpy.app.timers.is_registered(_end_after_rest):
             bpy.app.timers.register(_end_after_rest, first_interval=LOOK, persistent=True)
     _worker.used = time.monotonic()
@@ -115,31 +73,32 @@ def _end_after_rest() -> float | None:
 def _session_folder() -> Path:
     global _folder
     if _folder is None or not _folder.is_dir():
-        _folder = Path(tempfile.mkdtemp(prefix="eigenparts-", dir=bpy.app.tempdir or None))
+        # Beside Blender's own folder, which stays unseen where Blender is killed.
+        place = Path(bpy.app.tempdir or tempfile.gettempdir())
+        place = place.parent if bpy.app.tempdir else place
+        _remove_folders_left_behind(place)
+        _folder = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-", dir=place))
     return _folder
 
 
-def _start(folder: Path) -> WorkerProcess:
-    ours, theirs = connection.Pipe()
-    handle = theirs.fileno()
-    command = [sys.executable, *getattr(bpy.app, "python_args", ()), "-P", str(START_FILE), str(handle)]
-    with theirs:
-        try:
-            process = subprocess.Popen(command, **_options(handle))
-        except OSError:
-            ours.close()
-            raise
-    # One that ends at once is noticed when it is looked at.
-    with suppress(OSError):
-        ours.send((PACKAGE, str(ROOT), sys.path, str(folder)))
-    return WorkerProcess(process, ours, folder)
+def _remove_folders_left_behind(place: Path) -> None:
+    """Remove the folders of Blenders that were killed in the middle of a job, so that nothing could remove them."""
+    for folder in place.glob(f"{PREFIX}*-*"):
+        number = folder.name.removeprefix(PREFIX).partition("-")[0]
+        if number.isdecimal() and not _is_running(int(number)):
+            shutil.rmtree(folder, ignore_errors=True)
 
 
-def _options(handle: int) -> dict[str, Any]:
-    """Return how a process is started that has one end of a connection, and neither console nor output."""
-    silent = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)
-    if sys.platform != "win32":
-        return {**silent, "pass_fds": [handle]}
-    os.set_handle_inheritable(handle, True)
-    startup = subprocess.STARTUPINFO(lpAttributeList={"handle_list": [handle]})
-    return {**silent, "startupinfo": startup, "creationflags": subprocess.CREATE_NO_WINDOW}
+def _is_running(process: int) -> bool:
+    """Whether there is a process of a number; true where nobody can tell."""
+    if sys.platform == "win32":
+        # To ask would end it.
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        # It is somebody else's, or no number of a process.
+        return True
+    return True

@@ -103,10 +103,10 @@ def test_where_no_process_starts_blender_does_the_work(job, monkeypatch):
 
 
 def test_where_the_process_ends_before_it_is_ready_blender_does_the_work(job, monkeypatch, tmp_path):
-    from eigenparts.operators.jobs import worker_process
+    from eigenparts.tasks import processes
 
     (tmp_path / "start.py").write_text("raise SystemExit(1)")
-    monkeypatch.setattr(worker_process, "START_FILE", tmp_path / "start.py")
+    monkeypatch.setattr(processes, "START_FILE", tmp_path / "start.py")
     running = ended(job.Job(partial(tasks.answer, 42)))
     assert (running.is_in_blender, running.result()) == (True, 42)
 

@@ -320,7 +320,7 @@ FORBIDDEN_MODULES = {"pickle", "marshal", "shelve", "dill", "subprocess", "socke
 # What Blender and its worker process send each other, and keep in their own folder; a .blend reaches none of it.
 OF_THE_WORKER = {
     ("jobs", "worker_process.py"),
-    *(("tasks", f"{name}.py") for name in ("parcels", "recent_results", "worker_loop", "worker_start")),
+    *(("tasks", f"{name}.py") for name in ("parcels", "processes", "recent_results", "worker_loop", "worker_start")),
 }
 
 

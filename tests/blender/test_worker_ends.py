@@ -6,6 +6,7 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -147,6 +148,27 @@ def test_disabling_the_extension_leaves_no_process_and_no_folder(jobs, extension
     assert worker.process.returncode is not None
     assert not worker.folder.exists()
     extension.register()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a worker there removes its folder itself")
+def test_the_folder_of_a_blender_that_was_killed_goes_when_the_next_one_works(jobs, tmp_path, monkeypatch):
+    with subprocess.Popen([sys.executable, "-c", ""]) as ended_process:
+        pass
+    left, others = tmp_path / f"eigenparts-{ended_process.pid}-abc", tmp_path / f"eigenparts-{os.getpid()}-abc"
+    foreign = [tmp_path / name for name in ("eigenparts-notes-2", f"blender-{ended_process.pid}-abc")]
+    for folder in (left, others, *foreign):
+        (folder / "recent").mkdir(parents=True)
+    jobs.worker_process.end_session()
+    monkeypatch.setattr(jobs.worker_process.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(
+        jobs.worker_process, "bpy", SimpleNamespace(app=SimpleNamespace(tempdir="", timers=bpy.app.timers))
+    )
+    folder = jobs.worker_process._session_folder()
+    assert folder.parent == tmp_path
+    assert not left.exists()
+    assert all(path.exists() for path in (others, *foreign))
+    jobs.worker_process.end_session()
+    assert not folder.exists()
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")

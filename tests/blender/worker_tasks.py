@@ -95,6 +95,39 @@ def add_one(arrays, progress):
     return arrays
 
 
+def in_processes(function, arguments, progress):
+    """Call a function with each of some arguments, as long work that can be shared does."""
+    from eigenparts.tasks.shared_calls import run_all
+
+    return run_all(function, arguments, progress)
+
+
+def meet(number, folder, progress):
+    """Wait until two processes do this at once; return the number and the process."""
+    Path(folder, str(os.getpid())).touch()
+    while len(list(Path(folder).iterdir())) < 2:
+        time.sleep(0.01)
+    return number, os.getpid()
+
+
+def end_the_first_time(path, progress):
+    """End the process that does this, unless one did before."""
+    if not Path(path).exists():
+        Path(path).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return "done"
+
+
+def tell_process_and_sleep(path, progress):
+    Path(path).write_text(str(os.getpid()))
+    sleep_for_ever(progress)
+
+
+def raise_late(seconds, text, progress):
+    time.sleep(seconds)
+    raise ValueError(text)
+
+
 def path_of_imports(progress):
     return list(sys.path)
 

@@ -254,10 +254,32 @@ def label_matched(
     progress : Progress, optional
         May raise `Cancelled`.
     """
+    to_reference = map_to_reference(reference, target, matching, section(progress, 0, 0.8))
+    progress(0.8, "Carrying the parts over")
+    return label_mapped(reference, target, matching, to_reference, first_free)
+
+
+@told_if_full
+def map_to_reference(reference: Reference, target: Divisible, matching: Matching, progress: Progress = silent) -> Ints:
+    """Return (n,) the point of the reference that each point of a shape corresponds to by a matching."""
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
     pairs = point_pairs(matching.points, reference.shape.surface, target.surface, source, target.shape)
-    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8), pairs)
-    progress(0.8, "Carrying the parts over")
+    return point_map(source, target.shape, matching, progress, pairs)
+
+
+@told_if_full
+def label_mapped(
+    reference: Reference, target: Divisible, matching: Matching, to_reference: Ints, first_free: int
+) -> FaceLabels:
+    """Divide a shape into the parts of the reference, which its points are mapped to.
+
+    Parameters
+    ----------
+    to_reference : (n,) int64
+        As ``map_to_reference`` returns it.
+    first_free : int
+        The least label for parts without a partner on the reference.
+    """
     cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
     same_faces = (
