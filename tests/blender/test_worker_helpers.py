@@ -1,5 +1,7 @@
 """Work on several meshes is shared among processes: what comes out is the same, and none of them is left behind."""
 
+import subprocess
+import sys
 from functools import partial
 
 import bpy
@@ -8,8 +10,23 @@ import pytest
 from tests.blender import worker_tasks as tasks
 from tests.blender.conftest import add_object
 from tests.blender.test_background import ended, wait_for
-from tests.blender.test_worker_ends import is_running
+from tests.blender.test_worker_ends import ROOT, is_running
 from tests.blender.test_worker_results import bits
+
+# Blender with a job that two processes share.
+BLENDER = """
+import sys, time
+from functools import partial
+from tools.extension import load_extension
+extension = load_extension()
+extension.register()
+from eigenparts.operators.jobs import job
+from tests.blender import worker_tasks as tasks
+job.preferred_processes = lambda: 2
+running = job.Job(partial(tasks.in_processes, tasks.tell_process_and_sleep, [(path,) for path in sys.argv[1:]]))
+while not running.look():
+    time.sleep(0.01)
+"""
 
 
 @pytest.fixture
@@ -54,6 +71,16 @@ def test_a_cancelled_job_leaves_no_helper(jobs, tmp_path):
     running = jobs.Job(partial(tasks.in_processes, tasks.tell_process_and_sleep, [(str(path),) for path in paths]))
     wait_for(lambda: running.look() or all(path.exists() and path.read_text() for path in paths))
     running.cancel()
+    wait_for(lambda: not any(is_running(int(path.read_text())) for path in paths))
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+def test_helpers_end_with_a_blender_that_is_killed(tmp_path):
+    paths = [tmp_path / name for name in "ab"]
+    command = [sys.executable, "-c", BLENDER, *map(str, paths)]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL) as blender:
+        wait_for(lambda: all(path.exists() and path.read_text() for path in paths))
+        blender.kill()
     wait_for(lambda: not any(is_running(int(path.read_text())) for path in paths))
 
 

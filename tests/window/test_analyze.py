@@ -1,9 +1,12 @@
 """Analyze in the window: the panel, progress, ESC, and what happens to the mesh meanwhile."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from tests.window.conftest import MODULE, add_character, analyze, choose
+from tests.window.conftest import MODULE, add_character, analyze, choose, installed
+from tools.window import WindowError
 
 STATUS = "bpy.context.window_manager.eigenparts"
 ERRORS = f"sys.modules['{MODULE}.operators.messages.unexpected_errors']"
@@ -102,6 +105,20 @@ def test_a_worker_that_is_killed_changes_nothing_and_is_there_again(running, tak
     running.point(250, 250)
     running.settle()
     analyze(running)
+
+
+def test_quitting_in_the_middle_leaves_nothing(humanoid):
+    with installed() as window:
+        window.run("import sys")
+        add_character(window, humanoid)
+        window.run("with over_view(): bpy.ops.eigenparts.analyze('INVOKE_DEFAULT')")
+        window.wait_for(f"{STATUS}.is_running")
+        process, folder = window.value(f"({WORKER}.process.pid, str({WORKER}.folder))")
+        assert Path(folder).is_dir()
+        with pytest.raises(WindowError, match="Blender ended"):
+            window.run("bpy.ops.wm.quit_blender()")
+        assert not Path(f"/proc/{process}").exists()
+        assert not Path(folder).exists()
 
 
 def test_the_window_can_be_used_meanwhile(running):
