@@ -18,7 +18,7 @@ from .user_preferences import preferred_processes, preferred_threads
 Result = TypeVar("Result")
 
 # Seconds that a worker may take to start; on a slow disk, or behind a program that looks for viruses.
-START = 20.0
+START = 60.0
 NO_WORKER = "No process could be started for this, so Blender itself computed it, and could not be used meanwhile."
 ENDED = "The process that computed this has ended, perhaps for lack of memory; nothing was changed. Try it again."
 

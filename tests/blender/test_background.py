@@ -18,7 +18,7 @@ def job(extension):
     return job
 
 
-def wait_for(condition, seconds=60):
+def wait_for(condition, seconds=300):
     for _ in range(int(seconds / 0.01)):
         if condition():
             return
