@@ -19,7 +19,6 @@ REST, LOOK = 300.0, 5.0
 # Of the names of folders, before the number of the Blender.
 PREFIX = "eigenparts-"
 
-
 _worker: WorkerProcess | None = None
 _folder: Path | None = None
 
