@@ -117,7 +117,7 @@ def try_file(path: Path) -> dict[str, Any]:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     load_extension().register()
     from eigenparts.cli import formats
-    from eigenparts.operators.messages.user_errors import Refusal
+    from eigenparts.tasks.refusals import Refusal
 
     try:
         objects = formats.load(path).objects

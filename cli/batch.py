@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..operators.messages.user_errors import Refusal
+from ..tasks.refusals import Refusal
 from .formats import FORMATS, name_of_divided
 from .jobs import Job, first_of_each, place_of
 from .reports.report import Report, Settings

@@ -11,10 +11,10 @@ from ..compute.errors import EngineError
 from ..operators.blender.known_values import mesh_of
 from ..operators.mesh_data.world_shape import size_of
 from ..operators.messages.sentences import Messages
-from ..operators.messages.user_errors import Refusal
 from ..operators.parts.analysis_settings import AnalysisSettings
 from ..operators.parts.choice_items import ATTRIBUTE, EIGENFUNCTION, identifier
-from ..operators.parts.mesh_segmentation import AnalysisResult
+from ..tasks.mesh_analysis import AnalysisResult
+from ..tasks.refusals import Refusal
 from .formats import OpenFile
 from .reports.report import ObjectRow, part_rows
 

@@ -14,11 +14,12 @@ from .. import compute
 from ..compute.errors import EngineError
 from ..compute.progress import silent
 from ..operators.blender.known_values import mesh_of
-from ..operators.messages.user_errors import Refusal
-from ..operators.registration import mesh_registration, shape_registration
-from ..operators.registration.match_options import MatchOptions
+from ..operators.registration import mesh_registration
 from ..operators.registration.mesh_registration import SharedParts
-from ..operators.registration.shape_registration import MatchableShape, PreparedReference
+from ..tasks import shape_registration
+from ..tasks.match_options import MatchOptions
+from ..tasks.refusals import Refusal
+from ..tasks.shape_registration import MatchableShape, MatchedPair, PreparedReference
 from . import formats
 from .formats import OpenFile
 from .formats.points import points_of, settings_of_points
@@ -111,7 +112,8 @@ class Register:
         if isinstance(found, Exception):
             raise found
         first_free = max(self._first_free, prepared.highest_label + 1)
-        shape = shape_registration.divide(prepared, obj.name, *found, shared.options, first_free, silent)
+        pair = MatchedPair(obj.name, prepared, *found, shared.options)
+        shape = shape_registration.divide(pair, first_free, silent)
         messages = mesh_registration.write_target(mesh_of(obj), shape, shared, reference)
         self._first_free = max(first_free, shape.highest_label + 1)
         row = row_of(obj, shape.labels, shape.result, messages)

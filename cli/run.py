@@ -5,7 +5,7 @@ from collections.abc import Container, Iterable, Iterator
 from itertools import chain
 from typing import TextIO
 
-from ..operators.messages.user_errors import Refusal
+from ..tasks.refusals import Refusal
 from . import batch
 from .formats import name_of_divided, name_of_transferred
 from .formats.file_errors import problem_of

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Protocol
 
-from ..operators.messages.user_errors import Refusal
+from ..tasks.refusals import Refusal
 from . import formats
 from .formats import OpenFile
 from .formats.file_errors import problem_of, reason_of

@@ -8,8 +8,9 @@ import bpy
 
 from ..compute.progress import silent
 from ..operators.blender.known_values import mesh_of
-from ..operators.outputs.level_choice import LevelChoice
 from ..operators.parts import mesh_segmentation
+from ..tasks import mesh_analysis
+from ..tasks.level_choice import LevelChoice
 from . import formats
 from .formats import OpenFile
 from .objects import analysis_settings, chosen_objects, report_each, row_of
@@ -35,7 +36,7 @@ class Segment:
 
     def _divide(self, obj: bpy.types.Object) -> ObjectRow:
         given = mesh_segmentation.read(bpy.context, obj, analysis_settings(self._options))
-        result = mesh_segmentation.analyze(given, silent)
+        result = mesh_analysis.analyze(given, silent)
         segmented = mesh_segmentation.write(
             mesh_of(obj), result, mode=self._options.mode, choice=choice_of(self._options)
         )

@@ -11,11 +11,11 @@ import bpy
 from ..compute.errors import EngineError
 from ..compute.progress import silent
 from ..operators.messages.sentences import Messages
-from ..operators.messages.user_errors import Refusal
 from ..operators.transfer import mesh_transfer
-from ..operators.transfer.layer_mapping import MappedLayers, map_to_all
 from ..operators.transfer.layer_reading import LayerChoice
 from ..operators.transfer.mesh_transfer import TransferSettings, TransferSource
+from ..tasks.layer_mapping import MappedLayers, map_to_all
+from ..tasks.refusals import Refusal
 from . import formats
 from .formats import OpenFile
 from .formats.points import points_of, settings_of_points

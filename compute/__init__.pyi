@@ -47,7 +47,8 @@ from .registration.paper.diagram_matching import match_shape_diagrams as match_s
 from .registration.parts.population import CONTRADICTS as CONTRADICTS
 from .registration.parts.population import Reference as Reference
 from .registration.parts.population import agreed_matchings as agreed_matchings
-from .registration.parts.population import label_matched as label_matched
+from .registration.parts.population import label_mapped as label_mapped
+from .registration.parts.population import map_to_reference as map_to_reference
 from .registration.parts.population import match_divisible as match_divisible
 from .registration.parts.population import match_members as match_members
 from .registration.parts.population import prepare_reference as prepare_reference

@@ -8,6 +8,8 @@ from functools import wraps
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
+import numpy as np
+
 from .errors import MeshError
 
 PROC = Path("/proc")
@@ -16,6 +18,8 @@ GROUP_FILES = {
     "cgroup2": (("memory.max", "memory.high"), "memory.current", "inactive_file"),
     "cgroup": (("memory.limit_in_bytes",), "memory.usage_in_bytes", "total_inactive_file"),
 }
+# Rows of a matrix that is too large to be worked on without a buffer.
+SIZE_WITH_BUFFERS = 200
 FULL = "The memory is full; take elements of a lower order, or decimate the mesh."
 
 _Parameters = ParamSpec("_Parameters")
@@ -73,6 +77,16 @@ def require_memory(needed: float, refusal: str, *numbers: int) -> None:
     at_hand = available_memory()
     if needed > at_hand:
         raise MeshError(refusal.format(*numbers, _amount(needed), _amount(at_hand)))
+
+
+def claim_buffers() -> None:
+    """Let the matrix libraries take their buffers now: once the memory is full, OpenBLAS tries to for ever."""
+    # Loaded here, as most who ask for memory need no scipy.
+    import scipy.linalg
+
+    matrix = np.eye(SIZE_WITH_BUFFERS)
+    np.linalg.inv(matrix)
+    scipy.linalg.inv(matrix)
 
 
 def _amount(n_bytes: float) -> str:

@@ -12,8 +12,10 @@ ROOT = Path(__file__).parents[1]
 MAY_IMPORT = {
     "__init__": {"operators", "ui", "cli"},
     "compute": set(),
-    "operators": {"compute"},
-    "cli": {"compute", "operators"},
+    # What a worker process runs: with this rule, nothing that it imports imports anything of Blender.
+    "tasks": {"compute"},
+    "operators": {"compute", "tasks"},
+    "cli": {"compute", "operators", "tasks"},
     "ui": {
         *("operators.blender", "operators.mesh_state", "operators.messages", "operators.outputs.output_registry"),
         *("operators.parts.border_lines", "operators.parts.part_outline", "operators.mesh_data.selected_meshes"),
@@ -21,6 +23,7 @@ MAY_IMPORT = {
 }
 OUTSIDE = {
     "compute": {"numpy", "scipy"},
+    "tasks": {"numpy"},
     "operators": {"bl_operators", "bmesh", "bpy", "bpy_extras", "mathutils", "numpy"},
     "cli": {"bpy", "distributed", "numpy"},
     "ui": {"bl_ui", "blf", "bpy", "bpy_extras", "gpu", "gpu_extras", "mathutils", "numpy"},
@@ -28,6 +31,15 @@ OUTSIDE = {
 
 # With it loaded, a Python that has Blender as a module may wait for ever at its end (`cli/processes/ending.py`).
 NOWHERE = "scipy.optimize"
+
+# What runs inside Blender, which supports no threads of Python's; the extension site refuses them.
+IN_BLENDER = ("compute", "tasks", "operators", "ui")
+THREADS = (
+    *("threading", "_thread", "queue", "asyncio", "concurrent"),
+    *("multiprocessing.pool", "multiprocessing.dummy", "multiprocessing.managers", "multiprocessing.queues"),
+)
+# Methods of `sys.path` and `sys.modules` that change nothing.
+READING = ("get", "keys", "values", "items", "copy", "index", "count")
 
 # The rooms of a folder, each of which may import only those that stand before it.
 ORDER = {
@@ -95,6 +107,62 @@ def keeps_order(order: list[str], folder: list[str], importer: tuple[str, ...], 
     return importer[depth].startswith("__") or order.index(importer[depth]) >= order.index(imported[depth])
 
 
+def modules_with_threads(root: Path) -> set[str]:
+    """Return every file of what runs inside Blender that imports threads: Blender supports none of Python's."""
+    files = [root / "__init__.py", *(path for room in IN_BLENDER for path in sorted((root / room).rglob("*.py")))]
+    return {
+        str(path.relative_to(root))
+        for path in files
+        for module in imported_modules(path.relative_to(root).with_suffix("").parts, ast.parse(path.read_text()))
+        if module.startswith(THREADS)
+    }
+
+
+def modules_that_change_imports(root: Path) -> set[str]:
+    """Return every file of what runs inside Blender that has something to do with `sys.modules` or sets `sys.path`."""
+    return {
+        str(path.relative_to(root))
+        for path in [root / "__init__.py", *(path for room in IN_BLENDER for path in (root / room).rglob("*.py"))]
+        if any(changes_imports(node) for node in ast.walk(ast.parse(path.read_text())))
+    }
+
+
+def changes_imports(node: ast.AST) -> bool:
+    """Whether a statement or call changes `sys.path`, `sys.meta_path` or `sys.modules`."""
+    if isinstance(node, ast.Assign | ast.AugAssign | ast.Delete):
+        targets = [node.target] if isinstance(node, ast.AugAssign) else node.targets
+        return any(is_of_imports(target.value if isinstance(target, ast.Subscript) else target) for target in targets)
+    is_method = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+    return is_method and node.func.attr not in READING and is_of_imports(node.func.value)
+
+
+def is_of_imports(node: ast.AST) -> bool:
+    """Whether an expression is one of the variables that decide what is imported."""
+    return ast.unparse(node) in ("sys.path", "sys.meta_path", "sys.modules")
+
+
+def test_nothing_in_blender_imports_threads():
+    assert modules_with_threads(ROOT) == set()
+
+
+def test_nothing_in_blender_changes_what_is_imported():
+    assert modules_that_change_imports(ROOT) == {"tasks/worker_start.py"}
+
+
+@pytest.mark.parametrize("line", ["import threading", "from concurrent.futures import wait", "from queue import Queue"])
+def test_a_thread_is_noticed(tmp_path, line):
+    (tmp_path / "__init__.py").write_text(line)
+    assert modules_with_threads(tmp_path) == {"__init__.py"}
+
+
+@pytest.mark.parametrize(
+    "line", ["sys.path.append('')", "sys.path[:] = []", "sys.modules['bpy'] = 1", "del sys.modules['bpy']"]
+)
+def test_a_changed_path_is_noticed(tmp_path, line):
+    (tmp_path / "__init__.py").write_text(line)
+    assert modules_that_change_imports(tmp_path) == {"__init__.py"}
+
+
 def test_every_import_keeps_its_direction():
     assert violations(ROOT) == set()
 
@@ -122,6 +190,9 @@ def test_every_room_says_what_lives_there():
         ("compute/fem/space.py", "from scipy.optimize import linear_sum_assignment"),
         ("compute/fem/space.py", "from ..analysis import analyze"),
         ("compute/fem/space.py", "from ...operators import mesh_data"),
+        ("tasks/layers.py", "import bpy"),
+        ("tasks/layers.py", "from ..operators.mesh_data import mesh_arrays"),
+        ("compute/fem/space.py", "from ...tasks import threads"),
         ("operators/parts/analyze.py", "from ...ui import panel"),
         ("operators/parts/analyze.py", "from ... import cli"),
         ("operators/parts/analyze.py", "import scipy.sparse"),
@@ -153,7 +224,9 @@ def test_a_broken_rule_is_noticed(tmp_path, file, line):
         ("compute/__init__.py", "from .skeletons.embedding import skeleton"),
         ("compute/registration/parts/population.py", "from ..dense.point_map import point_map"),
         ("operators/parts/analyze.py", "from ..mesh_state.state import load"),
+        ("tasks/layers.py", "from .. import compute"),
         ("operators/parts/analyze.py", "from ... import compute"),
+        ("operators/parts/analyze.py", "from ...tasks import mesh_analysis"),
         ("cli/__main__.py", "from . import main"),
         ("cli/formats/obj.py", "from ..results.stages import write_surely"),
         ("ui/panel.py", "from ..operators.mesh_state import state"),

@@ -23,7 +23,7 @@ from eigenparts.cli import formats
 from eigenparts.cli.processes.suppress_output import blender_is_quiet as quiet
 from eigenparts.operators.blender.known_values import mesh_of, present
 from eigenparts.operators.mesh_state.state import read
-from eigenparts.operators.messages.user_errors import Refusal
+from eigenparts.tasks.refusals import Refusal
 from tools.extension_operators import run_operator
 from tools.render import render, side_by_side
 

@@ -151,7 +151,7 @@ def _operators(root: Path) -> dict[str, str]:
 
 @cache
 def _modules(root: Path) -> tuple[str, ...]:
-    folders = ("compute", "operators", "ui", "cli", "examples", "tools", "tests")
+    folders = ("compute", "tasks", "operators", "ui", "cli", "examples", "tools", "tests")
     return tuple(path for folder in folders for path in _files(root, folder))
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from .damage import MEND, cut_short, damaged
 from .open_file import OpenFile, open_file
 

@@ -1,6 +1,6 @@
 """The refusal of a damaged file: where, what is wrong, and what to do."""
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 
 MEND = "copy it here again, or export it again from the program that made it."
 

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from .damage import cut_short, damaged
 from .fbx_animation import stacks_written_once
 from .open_file import OpenFile, open_file

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...compute.errors import EngineError
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from ..processes.verdict import MEMORY_WORDS, MORE_MEMORY, NO_MEMORY
 from ..results.stages import PREFIX
 from .damage import damaged

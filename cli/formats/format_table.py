@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from . import blend, fbx, gltf, obj, off_mesh, ply, stl
 from .file_errors import reading_errors_told
 from .open_file import OpenFile

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 
 # Some writers leave out the keyword, the space behind it or the number of edges.
 HEAD = re.compile(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 
 from ...operators.blender.known_values import mesh_of
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from .off import FaceLines
 from .repairs import WHOLE_FILE, Repairs
 

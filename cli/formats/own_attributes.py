@@ -7,10 +7,11 @@ from collections.abc import Iterator
 import bpy
 import numpy as np
 
-from ...operators.mesh_data.attribute_values import STORAGES, read_attribute
+from ...operators.mesh_data.attribute_values import read_attribute
 from ...operators.mesh_data.mesh_arrays import OwnAttribute, mark_own, own_names, write_attribute
 from ...operators.outputs import output_registry
 from ...operators.outputs.corner_colours import PART_COLOR
+from ...tasks.attribute_types import STORAGES
 from .repairs import Repairs
 
 RENAMED = 'the attribute "{}" of the file is "{}" in the result, as its name belongs to what is written there.'

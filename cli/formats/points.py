@@ -3,8 +3,8 @@
 import json
 from pathlib import Path
 
-from ...operators.mesh_state.point_pairs import NO_POINTS, GivenPoints
-from ...operators.messages.user_errors import Refusal
+from ...tasks.match_options import NO_POINTS, GivenPoints
+from ...tasks.refusals import Refusal
 from ..reports.report import Settings
 
 LOOK = '{"points": [[source, target], ...]} with the numbers of vertices, from 0'

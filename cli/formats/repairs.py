@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...operators.mesh_data.mesh_arrays import read_edges, read_positions
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 
 # Sentences about the meshes of a file by their names; those about the file as a whole have none.
 Repairs = dict[str, list[str]]

@@ -12,7 +12,8 @@ from typing import cast
 
 import bpy
 
-from ...operators.messages.user_errors import MISSING_SCIPY, Refusal
+from ...operators.messages.user_errors import MISSING_SCIPY
+from ...tasks.refusals import Refusal
 from ..reports.report import Report
 from .verdict import ProcessEnd
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeAlias
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from ..jobs import Job, failed_report
 from ..reports.report import Report
 from .child_process import own_command, reports_in

@@ -27,7 +27,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...operators.messages.user_errors import Refusal
+from ...tasks.refusals import Refusal
 from ..jobs import Job
 from ..reports.report import Report, Written, as_line, path_beside
 from ..reports.stored_report import StoredReport, read_report

@@ -7,16 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.mesh_shape import Stretch
+from ...tasks.refusals import Refusal
+from ...tasks.skeleton_laying import NamedSkeleton
 from ..blender.known_values import mesh_of, present
 from ..jobs.mesh_handle import MeshHandle
-from ..mesh_data.world_shape import Stretch
+from ..mesh_data.world_shape import as_transform
 from ..mesh_state.palette import srgb_of
 from ..mesh_state.state import read
 from ..messages.sentences import Messages
-from ..messages.user_errors import Refusal
 from .bone_names import name_bones
 from .skeleton_options import ArmatureOptions
-from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
+from .skeleton_request import SkeletonRequest, part_names
 
 # Length of the root bone in radii of the body around it.
 ROOT_LENGTH = 0.6
@@ -95,7 +97,7 @@ def _place(armature: bpy.types.Object, obj: bpy.types.Object, stretch: Stretch) 
     armature.matrix_parent_inverse, armature.matrix_basis = obj.matrix_parent_inverse, obj.matrix_basis
     if stretch.is_none:
         return
-    unstretched = obj.matrix_basis @ stretch.inverse.as_transform
+    unstretched = obj.matrix_basis @ as_transform(stretch.inverse)
     if obj.parent is None:
         armature.matrix_basis = unstretched
     else:
@@ -113,7 +115,7 @@ def bind(obj: bpy.types.Object, armature: bpy.types.Object, names: list[str], la
         for vertex in np.flatnonzero((column > 0) & (column < 1)).tolist():
             group.add([vertex], column[vertex], "REPLACE")
     obj.parent, obj.parent_type, obj.parent_bone = armature, "OBJECT", ""
-    obj.matrix_parent_inverse = laid.stretch.as_transform @ obj.matrix_basis.inverted_safe()
+    obj.matrix_parent_inverse = as_transform(laid.stretch) @ obj.matrix_basis.inverted_safe()
     modifier = obj.modifiers.new("Armature", "ARMATURE")
     assert isinstance(modifier, bpy.types.ArmatureModifier)
     modifier.object = armature

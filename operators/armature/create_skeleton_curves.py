@@ -4,10 +4,12 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.mesh_shape import Stretch
+from ...tasks.skeleton_laying import NamedSkeleton
 from ..blender.known_values import mesh_of, present
-from ..mesh_data.world_shape import Stretch, world_matrix
+from ..mesh_data.world_shape import as_transform, world_matrix
 from ..messages.sentences import Messages
-from .skeleton_request import NamedSkeleton, SkeletonRequest, part_names
+from .skeleton_request import SkeletonRequest, part_names
 
 # On the curve: the part that each of its splines lies in, by name.
 SPLINE_PARTS = "eigenparts_spline_parts"
@@ -67,7 +69,7 @@ def add_curve(
     for collection in obj.users_collection:
         collection.objects.link(curve)
     # Scaled as the object, the curve would be flattened with it.
-    curve.matrix_world = world_matrix(obj) @ stretch.inverse.as_transform
+    curve.matrix_world = world_matrix(obj) @ as_transform(stretch.inverse)
     return curve
 
 

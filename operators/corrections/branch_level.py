@@ -3,9 +3,9 @@
 import bpy
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.typed_properties import BoolProperty, IntProperty, TypedProperties
 from ..mesh_state.state import MeshState
-from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 

@@ -7,12 +7,13 @@ from typing import Any
 import bpy
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of
 from ..blender.mixins import OperatorMixin
 from ..blender.outcome import Outcome
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState, is_analyzed_for, read
-from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
+from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..parts.select import PART_PROPERTY, use_active_part
 
 BODY_IS_WHAT_IS_LEFT = "The body is what the parts leave; change the parts next to it instead."

@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.typed_properties import EnumProperty, TypedProperties
@@ -14,7 +15,7 @@ from ..mesh_state import analysis_writer, corrected_analysis, registration_recor
 from ..mesh_state.analyzed_faces import AnalyzedFaces
 from ..mesh_state.state import MeshState, is_analyzed_for, read
 from ..messages.sentences import tell
-from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
+from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs import output_registry, part_writer
 from ..outputs.rollback import all_or_nothing, faces_or_nothing
 from . import paint

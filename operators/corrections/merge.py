@@ -3,11 +3,11 @@
 import bpy
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.registered_settings import mesh_settings
 from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
-from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import CorrectsParts, new_item, refuse_absent
 

@@ -5,12 +5,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of
 from ..blender.outcome import Outcome
 from ..blender.typed_properties import BoolProperty, IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState, is_analyzed_for
-from ..messages.user_errors import Refusal, can_use_active_mesh, is_linked
+from ..messages.user_errors import can_use_active_mesh, is_linked
 from ..outputs import part_writer
 from ..parts.select import selected_faces
 from .correction_request import CorrectsParts, new_item, refuse_absent

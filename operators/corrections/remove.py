@@ -4,9 +4,9 @@ import bpy
 import numpy as np
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_state.state import MeshState
-from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from .correction_request import CorrectsParts
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import bpy
 
 from ... import compute
+from ...tasks.refusals import Refusal
 from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
 from ..mesh_data.mesh_arrays import read_own_integers
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
-from ..messages.user_errors import Refusal
 from ..outputs import part_writer
 from ..outputs.division import PART
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent

@@ -14,11 +14,10 @@ from ..messages import unexpected_errors
 from ..messages.sentences import in_language, tell
 from ..messages.unexpected_errors import errors_told
 from ..messages.user_errors import refusals_told
-from .job import Job, Result
-from .threads import use_preferred_threads
+from .job import NO_WORKER, Job, Result
 
-# Seconds between looks at the job; redrawing more often only takes time from it.
-INTERVAL = 0.1
+# Seconds between looks at the job; it tells of progress less often, so that drawing takes no time from it.
+INTERVAL = 0.05
 
 _running: Job[Any] | None = None
 
@@ -27,7 +26,8 @@ class BackgroundOperator(OperatorMixin):
     """Base class of long operators; they give ``begin`` and ``finish``.
 
     ``begin(context)`` reads what is needed and returns work that never touches Blender and a handle for ``finish``;
-    ``finish(context, handle, result)`` writes the result. Scripts wait for the work; the window runs it in a thread.
+    ``finish(context, handle, result)`` writes the result. Scripts wait for the work; the window lets the worker process
+    do it, so work and result are made of values and of functions of modules.
     """
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., Any], Any]:
@@ -66,12 +66,15 @@ class BackgroundOperator(OperatorMixin):
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        if not self._job.is_done:
+        if not self._job.look():
             _show_progress(context, type(self).bl_idname, self._job)
             return {"PASS_THROUGH"}
         self._leave(context)
         with errors_told(self):
-            return self.finish(context, self._handle, self._job.result())
+            outcome = self.finish(context, self._handle, self._job.result())
+            if self._job.is_in_blender:
+                tell(self, "WARNING", NO_WORKER)
+            return outcome
         return {"CANCELLED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -100,7 +103,7 @@ def can_start_job(operator: type[bpy.types.Operator]) -> bool:
 
 
 def stop_running_job() -> None:
-    """Disown the running job, if there is one; its operator notices at the next tick."""
+    """End the running job, if there is one; its operator notices at the next tick."""
     global _running
     if _running is not None:
         _running.cancel()
@@ -109,7 +112,6 @@ def stop_running_job() -> None:
 
 def _start(work: Callable[[Progress], Result]) -> Job[Result]:
     global _running
-    use_preferred_threads()
     _running = job = Job(work)
     return job
 

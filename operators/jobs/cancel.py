@@ -3,7 +3,7 @@
 import bpy
 
 from ..blender.outcome import Outcome
-from . import background
+from . import background, worker_process
 
 
 class EIGENPARTS_OT_cancel(bpy.types.Operator):
@@ -33,4 +33,5 @@ def register() -> None:
 def unregister() -> None:
     """Remove the operator; the extension goes, so a job has nobody left to report to."""
     background.stop_running_job()
+    worker_process.end_session()
     _unregister_classes()

@@ -1,24 +1,33 @@
-"""One long computation in a worker thread, so that the window stays alive; knows nothing of Blender."""
+"""One long computation in the worker process, so that the window stays alive."""
 
-import threading
+from __future__ import annotations
+
+import time
 from collections.abc import Callable
-from concurrent.futures import Future
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, cast
 
-from ...compute.errors import Cancelled
-from ...compute.progress import Progress
+from ...compute.progress import Progress, silent
+from ...tasks.processes import WorkerProcess
+from ...tasks.refusals import Refusal
+from ...tasks.threads import use_threads
+from ...tasks.tracebacks import keep_traceback
+from ...tasks.worker_messages import Answer, Failure, Ready, Report, Task, Told
+from . import worker_process
+from .user_preferences import preferred_processes, preferred_threads
 
 Result = TypeVar("Result")
 
-# A cancelled job may need seconds to notice; the next one waits here, so that two never compute at once.
-_TURN = threading.Lock()
+# Seconds that a worker may take to start; on a slow disk, or behind a program that looks for viruses.
+START = 60.0
+NO_WORKER = "No process could be started for this, so Blender itself computed it, and could not be used meanwhile."
+ENDED = "The process that computed this has ended, perhaps for lack of memory; nothing was changed. Try it again."
 
 
 class Job(Generic[Result]):
-    """Run ``work(progress)`` in a thread.
+    """Run ``work(progress)`` in the worker, in Blender itself where there can be none.
 
-    The thread is a daemon: closing Blender does not wait for it. Whoever started the job polls ``is_done`` and takes
-    ``result()``; a cancelled job is never asked for its result.
+    Whoever started the job calls ``look`` until it is true, and then takes ``result()``; a cancelled job is never
+    asked for its result.
 
     Attributes
     ----------
@@ -26,42 +35,81 @@ class Job(Generic[Result]):
         How much of the work is done, 0 to 1.
     text : str
         What is being done, for the user.
+    is_cancelled : bool
     """
 
     def __init__(self, work: Callable[[Progress], Result]) -> None:
-        self._stop = threading.Event()
-        self._report(0.0, "Waiting for the cancelled job to stop")
-        self._outcome: Future[Result] = Future()
-        threading.Thread(target=self._run, args=[work], daemon=True, name="eigenparts").start()
+        self._report(0.0, "Starting")
+        self.is_cancelled = False
+        self._task = Task(work, preferred_threads(), preferred_processes())
+        self._outcome: Answer | Failure | None = None
+        self._worker: WorkerProcess | None = None
+        try:
+            self._worker = worker_process.running_worker()
+        except OSError:
+            return
+        if self._worker.is_ready:
+            self._hand_over(self._worker)
 
     @property
-    def is_done(self) -> bool:
-        """Whether a result or an error is ready."""
-        return self._outcome.done()
+    def is_in_blender(self) -> bool:
+        """Whether there is no worker for it."""
+        return self._worker is None
 
-    @property
-    def is_cancelled(self) -> bool:
-        """Whether the job was disowned."""
-        return self._stop.is_set()
+    def look(self) -> bool:
+        """Take in what the worker has told; return whether a result or an error is ready, or no worker will do it."""
+        worker = self._worker
+        if worker is None or self._outcome is not None:
+            return True
+        try:
+            while self._outcome is None and worker.channel.poll():
+                self._take_in(worker.told(), worker)
+        except (EOFError, OSError):
+            self._lose(worker)
+        if not worker.is_ready and time.monotonic() - worker.started > START:
+            self._lose(worker)
+        return self._worker is None or self._outcome is not None
 
     def cancel(self) -> None:
-        """Disown the job: it stops at its next report of progress."""
-        self._stop.set()
+        """End the work at once, whatever it does."""
+        self.is_cancelled = True
+        if self._worker is not None and self._outcome is None:
+            worker_process.stop_worker()
 
     def result(self) -> Result:
         """Return what the work returned, or raise what it raised."""
-        return self._outcome.result()
+        if self._worker is None:
+            use_threads(self._task.n_threads)
+            return cast(Result, self._task.work(silent))
+        if isinstance(self._outcome, Failure):
+            keep_traceback(self._outcome.error, self._outcome.traceback)
+            raise self._outcome.error
+        assert self._outcome is not None
+        return cast(Result, self._outcome.result)
 
-    def _run(self, work: Callable[[Progress], Result]) -> None:
-        with _TURN:
-            try:
-                self._report(0.0, "Starting")
-                self._outcome.set_result(work(self._report))
-            except Exception as error:
-                # Whatever it is, it is raised again by result(), in the main thread.
-                self._outcome.set_exception(error)
+    def _take_in(self, told: Told, worker: WorkerProcess) -> None:
+        if isinstance(told, Ready):
+            worker.is_ready = True
+            self._hand_over(worker)
+        elif isinstance(told, Report):
+            self._report(told.fraction, told.text)
+        else:
+            self._outcome = told
+            worker.is_busy, worker.used = False, time.monotonic()
 
     def _report(self, fraction: float, text: str) -> None:
-        if self._stop.is_set():
-            raise Cancelled
         self.fraction, self.text = fraction, text
+
+    def _hand_over(self, worker: WorkerProcess) -> None:
+        try:
+            worker.hand_over(self._task)
+        except OSError:
+            self._lose(worker)
+
+    def _lose(self, worker: WorkerProcess) -> None:
+        """Take leave of a worker that has ended; one that was never ready leaves the work to Blender."""
+        worker_process.stop_worker()
+        if worker.is_ready:
+            self._outcome = Failure(Refusal(ENDED), "")
+        else:
+            self._worker = None

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import bpy
 
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..mesh_data import mesh_arrays
-from ..messages.user_errors import Refusal
 
 NO_MESH = "The mesh was deleted while it was analyzed."
 IN_EDIT_MODE = "The mesh was taken into edit mode while it was analyzed; leave edit mode and analyze it again."

@@ -1,40 +1,12 @@
 """The values of attributes of all kinds as arrays, however Blender keeps them."""
 
-from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import cast
 
 import bpy
 import numpy as np
-from numpy.typing import NDArray
 
+from ...tasks.attribute_types import STORAGES, AttributeType, Domain, Values
 from ..blender.known_values import elements_of
-
-AttributeType = Literal["FLOAT", "INT", "INT8", "BOOLEAN", "FLOAT2", "FLOAT_VECTOR", "FLOAT_COLOR", "BYTE_COLOR"]
-Domain = Literal["POINT", "EDGE", "FACE", "CORNER"]
-# Of any of the types below.
-Values = NDArray[Any]
-
-
-@dataclass(frozen=True)
-class Storage:
-    """The form of one kind of attribute in Blender: the property, its numbers, and whether values can be blended."""
-
-    property_name: str
-    n_components: int
-    dtype: type[np.float32] | type[np.int32] | type[np.bool_]
-    can_blend: bool
-
-
-STORAGES = {
-    "FLOAT": Storage("value", 1, np.float32, True),
-    "INT": Storage("value", 1, np.int32, False),
-    "INT8": Storage("value", 1, np.int32, False),
-    "BOOLEAN": Storage("value", 1, np.bool_, False),
-    "FLOAT2": Storage("vector", 2, np.float32, True),
-    "FLOAT_VECTOR": Storage("vector", 3, np.float32, True),
-    "FLOAT_COLOR": Storage("color", 4, np.float32, True),
-    "BYTE_COLOR": Storage("color", 4, np.float32, True),
-}
 
 
 def kind_of(attribute: bpy.types.Attribute) -> tuple[AttributeType, Domain]:

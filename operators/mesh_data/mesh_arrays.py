@@ -13,10 +13,12 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.attribute_types import AttributeType, Domain, Values
+from ...tasks.mesh_shape import NO_STRETCH, MeshArrays, Stretch
+from ...tasks.refusals import Refusal
 from ..blender.known_values import elements_of, mesh_of
-from ..messages.user_errors import IN_EDIT_MODE, Refusal
-from .attribute_values import AttributeType, Domain, Values
-from .world_shape import NO_STRETCH, Stretch, stretch_of
+from ..messages.user_errors import IN_EDIT_MODE
+from .world_shape import stretch_of
 
 Number = TypeVar("Number", np.int32, np.float32)
 
@@ -24,28 +26,6 @@ Number = TypeVar("Number", np.int32, np.float32)
 OWN_ATTRIBUTES = "eigenparts_attributes"
 # Names that ours may have: nothing else is ever taken for ours, whatever the list says.
 OWN_NAME = re.compile(r"\.?eigenparts_\w+|eigenfunction_\d+|part|part_vertex|part_color|\.sculpt_face_set")
-
-
-@dataclass(frozen=True, eq=False)
-class MeshArrays:
-    """The surface of a Blender mesh; V vertices, T triangles, E edges.
-
-    Attributes
-    ----------
-    vertices : (V, 3) float64
-        Of the shape in the world, in the size of the mesh.
-    triangles : (T, 3) int64
-    polygon_of_triangle : (T,) int64
-    edges : (E, 2) int64
-    stretch : Stretch
-        From the mesh to the shape.
-    """
-
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    polygon_of_triangle: NDArray[np.int64]
-    edges: NDArray[np.int64]
-    stretch: Stretch = NO_STRETCH
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from .world_shape import Stretch
+from ...tasks.mesh_shape import Stretch
 
 # Crossings of one edge that are nearer to each other than this fraction of it are one vertex: no slivers.
 SAME_PLACE = 0.05

@@ -6,80 +6,22 @@ stretch that keeps the volume: shapes are its mesh stretched, in the size of the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, cast
+from typing import cast
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ..messages.user_errors import Refusal
+from ...tasks.mesh_shape import ROUNDING, Stretch
+from ...tasks.refusals import Refusal
 
-# A stretch nearer to none than this is none. Matrices of 32 bits are turned with an error of 1e-6 under a hundred
-# parents; what a hundred thousandth more would change, nobody sees.
-ROUNDING = 1e-5
 # An extent that is this fraction of another one is nothing but rounding.
 FLAT = 1e-6
 # Parents of these kinds move with single vertices or bones, which Blender alone knows.
 MOVED_BY_PIECES = ("BONE", "VERTEX", "VERTEX_3")
 
 FLATTENED = "The object is scaled to nothing along a direction, by its own scale or that of a parent; change it first."
-
-
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """A linear map from a mesh to its shape in the world.
-
-    Attributes
-    ----------
-    matrix : (3, 3) float64
-        Symmetric, with a mirror across axes behind it if the object is mirrored; its determinant is 1 or -1.
-    """
-
-    matrix: NDArray[np.float64]
-
-    @cached_property
-    def is_none(self) -> bool:
-        """Whether the mesh already is the shape."""
-        return np.array_equal(self.matrix, np.eye(3))
-
-    @cached_property
-    def mirrors(self) -> bool:
-        """Whether left and right are exchanged, and faces turned over."""
-        return bool(np.linalg.det(self.matrix) < 0)
-
-    @property
-    def inverse(self) -> Stretch:
-        """The map from the shape to the mesh."""
-        return self if self.is_none else Stretch(np.linalg.inv(self.matrix))
-
-    @property
-    def as_transform(self) -> Matrix:
-        """The map as a matrix of Blender."""
-        return Matrix(self.matrix.tolist()).to_4x4()
-
-    def of(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return points or directions (n, 3) stretched."""
-        return vectors if self.is_none else vectors @ self.matrix.T
-
-    def turned(self, corners: NDArray[Any]) -> NDArray[Any]:
-        """Return the corners (T, 3) of triangles in the order in which they face outward."""
-        return corners[:, [0, 2, 1]] if self.mirrors else corners
-
-    def areas(self, areas: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the (n,) areas of faces with unit normals (n, 3) after they are stretched."""
-        return areas if self.is_none else areas * np.linalg.norm(self.inverse.matrix.T @ normals.T, axis=0)
-
-    def agrees_with(self, other: Stretch) -> bool:
-        """Whether two stretches make the same shape of every mesh, up to rounding."""
-        between = self.matrix @ np.linalg.inv(other.matrix)
-        is_turn = np.abs(np.linalg.svd(between, compute_uv=False) - 1).max() <= ROUNDING
-        return self.mirrors == other.mirrors and bool(is_turn)
-
-
-NO_STRETCH = Stretch(np.eye(3))
 
 
 def stretch_of(obj: bpy.types.Object) -> Stretch:
@@ -100,6 +42,11 @@ def stretch_of(obj: bpy.types.Object) -> Stretch:
     extents = extents / np.cbrt(extents.prod())
     symmetric = np.eye(3) if np.ptp(extents) <= ROUNDING else axes.T @ np.diag(extents) @ axes
     return Stretch(_mirror(obj) @ symmetric if np.linalg.det(matrix) < 0 else symmetric)
+
+
+def as_transform(stretch: Stretch) -> Matrix:
+    """Return a stretch as a matrix of Blender."""
+    return Matrix(stretch.matrix.tolist()).to_4x4()
 
 
 def size_of(obj: bpy.types.Object) -> float:

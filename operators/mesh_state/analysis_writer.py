@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.attribute_values import Values
+from ...tasks.attribute_types import Values
+from ...tasks.mesh_analysis import BorderSource, StoredAnalysis
+from ...tasks.mesh_shape import Stretch
+from ...tasks.refusals import Refusal
 from ..mesh_data.mesh_arrays import OwnAttribute, face_areas, fingerprint, write_attributes
-from ..mesh_data.world_shape import Stretch, stands_as, users_of
-from ..messages.user_errors import Refusal
+from ..mesh_data.world_shape import stands_as, users_of
 from . import corrections, function_hints
 from .part_table import PartTable, packed_table, renumbered_table
 from .schema import (
@@ -33,8 +35,6 @@ from .schema import (
 )
 from .state import MeshState, read, remember, replace
 from .stored_analysis import (
-    BorderSource,
-    StoredAnalysis,
     branch_attributes,
     has_trees,
     packed_branches,

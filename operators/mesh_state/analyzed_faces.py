@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.mesh_arrays import MeshArrays, read_mesh
-from ..mesh_data.world_shape import Stretch
+from ...tasks.mesh_shape import MeshArrays, Stretch
+from ..mesh_data.mesh_arrays import read_mesh
 from .stored_analysis import vertex_heights
 
 

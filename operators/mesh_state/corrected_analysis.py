@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..messages.user_errors import Refusal
+from ...tasks.mesh_analysis import BorderSource, StoredAnalysis
+from ...tasks.refusals import Refusal
 from .corrections import MOST_OWN_PARTS
 from .schema import DAMAGED
 from .state import MeshState
-from .stored_analysis import BorderSource, StoredAnalysis
 
 REGISTERED = "The mesh shows the parts of another object; move its level first, so that it has parts of its own."
 NO_EFFECT = "That changes nothing here; the mesh was left as it is."

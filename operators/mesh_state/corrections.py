@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.attribute_values import Values
+from ...tasks.attribute_types import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, own_names, read_own_integers
 from .schema import CORRECTIONS, PAINTED, PIECE, REDRAWN, TREE
 from .serialization import UNREADABLE, packed_array, unpacked_array

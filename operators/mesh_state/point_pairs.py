@@ -13,29 +13,12 @@ import numpy as np
 from mathutils import Vector
 from numpy.typing import NDArray
 
+from ...tasks.match_options import GivenPoints
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of
 from ..blender.registered_settings import PointPairRow, point_pairs
-from ..messages.user_errors import Refusal
 
 CHANGED = "Point {} was given before the vertices of {} changed; remove it and give it again."
-
-
-@dataclass(frozen=True)
-class GivenPoints:
-    """Pairs of vertices of a source and a target.
-
-    Attributes
-    ----------
-    vertices : tuple of (int, int)
-    numbers : tuple of int
-        By which they are told.
-    """
-
-    vertices: tuple[tuple[int, int], ...] = ()
-    numbers: tuple[int, ...] = ()
-
-
-NO_POINTS = GivenPoints()
 
 
 @dataclass(frozen=True)

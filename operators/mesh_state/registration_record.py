@@ -7,7 +7,8 @@ from typing import Any
 
 import bpy
 
-from ..messages.user_errors import Refusal
+from ...tasks.match_options import MatchOptions
+from ...tasks.refusals import Refusal
 from .part_table import PartTable, packed_table, unpacked_table
 from .schema import REGISTRATION
 from .serialization import UNREADABLE
@@ -130,3 +131,9 @@ def _makes_sense(match: Match) -> bool:
         and 0 <= match.confidence <= 1
         and 0 <= match.alternative <= match.n_alternatives
     )
+
+
+def remembered_options(match: Match) -> MatchOptions:
+    """Return the options that a mesh was registered with."""
+    flips = {int(number): sign for number, sign in match.flips.items()}
+    return MatchOptions(flips, match.alternative, match.mirrored)

@@ -16,10 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.mesh_analysis import BorderSource, StoredAnalysis
+from ...tasks.mesh_shape import Stretch
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of
 from ..mesh_data.mesh_arrays import fingerprint
-from ..mesh_data.world_shape import Stretch, stands_as, users_of
-from ..messages.user_errors import Refusal
+from ..mesh_data.world_shape import stands_as, users_of
 from . import (
     bone_layout,
     corrections,
@@ -34,7 +36,6 @@ from .analyzed_faces import AnalyzedFaces
 from .part_table import PartTable
 from .registration_record import Match, Registration
 from .serialization import UNREADABLE
-from .stored_analysis import BorderSource, StoredAnalysis
 from .summary import Summary, unpacked_summary
 
 STATE = "eigenparts_state"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
 
@@ -11,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
-from ..mesh_data.attribute_values import Values
+from ...tasks.attribute_types import Values
+from ...tasks.mesh_analysis import BorderSource, StoredAnalysis
+from ...tasks.mesh_shape import NO_STRETCH, Stretch
+from ...tasks.refusals import Refusal
 from ..mesh_data.mesh_arrays import OwnAttribute, read_edges, read_own_floats, read_own_integers
-from ..mesh_data.world_shape import NO_STRETCH, Stretch
-from ..messages.user_errors import Refusal
 from .schema import (
     ARCS,
     BRANCHES,
@@ -33,43 +33,6 @@ from .schema import (
 )
 from .serialization import UNREADABLE, packed, packed_array, unpacked, unpacked_array
 from .validation import is_sound, lie_within
-
-
-@dataclass(frozen=True, eq=False)
-class StoredAnalysis:
-    """All that levels are read from.
-
-    Attributes
-    ----------
-    part_tree : PartTree
-        Without the pairs that are noise.
-    shells : str
-        What was done with loose parts, one of ``compute.SHELLS``.
-    stretch : Stretch
-        From the mesh to the shape that was analyzed.
-    corrections : Corrections, optional
-        What was changed by hand; it refers to the branches of this tree.
-    """
-
-    part_tree: compute.PartTree
-    shells: str
-    stretch: Stretch = NO_STRETCH
-    corrections: compute.Corrections | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class BorderSource:
-    """The heights and arcs that the borders of every level are cut from.
-
-    Attributes
-    ----------
-    profile : EdgeProfile
-        Of the edges of the mesh.
-    vertex_heights : (V,) float64
-    """
-
-    profile: compute.EdgeProfile
-    vertex_heights: NDArray[np.float64]
 
 
 def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:

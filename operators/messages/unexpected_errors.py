@@ -1,18 +1,16 @@
 """Errors that nobody foresaw: a sentence for the user, and the traceback kept for the bug report."""
 
-import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 
 import bpy
 
+from ...tasks.tracebacks import traceback_without_folders
 from .sentences import tell
 from .user_errors import refusals_told
 
 OUT_OF_MEMORY = "There is not enough memory for this; try linear elements or a mesh with fewer faces."
-PACKAGE = Path(__file__).parents[2]
 
 _last: "Fault | None" = None
 
@@ -60,25 +58,6 @@ def forget() -> None:
     """Forget it, as a new job begins."""
     global _last
     _last = None
-
-
-def traceback_without_folders(error: BaseException) -> str:
-    """Return the traceback of an error, with places in this package or bare file names, and without its text.
-
-    The text of an error may name a file or anything else that is nobody's business; only ours are known not to.
-    """
-    places = [
-        f"{_place(frame.filename)}:{frame.lineno} in {frame.name}"
-        for frame in traceback.extract_tb(error.__traceback__)
-    ]
-    cause = error.__cause__
-    before = [traceback_without_folders(cause), "which led to"] if cause is not None else []
-    return "\n".join([*before, *places, type(error).__name__])
-
-
-def _place(filename: str) -> str:
-    path = Path(filename)
-    return path.relative_to(PACKAGE).as_posix() if path.is_relative_to(PACKAGE) else path.name
 
 
 def _sentence(error: Exception) -> str:

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 import bpy
 
 from ...compute.errors import EngineError
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of
 from .sentences import tell
 
@@ -17,10 +18,6 @@ MISSING_SCIPY = (
 )
 IN_EDIT_MODE = "Leave edit mode first; results are written to the mesh as a whole."
 LINKED = "The mesh is linked from another file; make it local first."
-
-
-class Refusal(Exception):  # noqa: N818 - nothing is broken: the user can mend it
-    """Something cannot be done as things are; the text says what the user can do."""
 
 
 def is_engine_complete() -> bool:
@@ -35,15 +32,6 @@ def refusals_told(operator: bpy.types.Operator) -> Iterator[None]:
         yield
     except (Refusal, EngineError) as error:
         tell(operator, "ERROR", str(error))
-
-
-@contextmanager
-def in_name_of(name: str) -> Iterator[None]:
-    """Let refusals of ours and of the engine begin with the name of the object they are about."""
-    try:
-        yield
-    except (Refusal, EngineError) as error:
-        raise Refusal(f"{name}: {error}") from error
 
 
 def refuse_unwritable(mesh: bpy.types.Mesh) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ... import compute
-from ..mesh_data.attribute_values import Values
+from ...tasks.attribute_types import Values
 from ..mesh_data.mesh_arrays import OwnAttribute, write_attributes
 from ..mesh_state import schema
 from ..mesh_state.part_table import PartTable, number_parts, packed_table, with_more_swatches, with_swatches

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.level_choice import LevelChoice
+from ...tasks.refusals import Refusal
 from ..blender.known_values import present
 from ..mesh_data.mesh_arrays import read_own_integers, refuse_foreign
 from ..mesh_state import corrected_analysis, registration_record, schema
@@ -19,11 +21,9 @@ from ..mesh_state.corrections import packed_items, packed_redrawn, painted_attri
 from ..mesh_state.part_table import PartTable, packed_table
 from ..mesh_state.state import MeshState, read, remember
 from ..mesh_state.validation import lie_within
-from ..messages.user_errors import Refusal
 from . import output_registry
 from .division import PART, division_of
 from .division_writer import write_parts
-from .level_choice import LevelChoice
 from .ownership import mend
 from .rollback import all_or_nothing
 

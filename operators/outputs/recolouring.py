@@ -5,8 +5,9 @@ from contextlib import suppress
 import bpy
 from bpy.app.handlers import persistent
 
+from ...tasks.refusals import Refusal
 from ..mesh_state.state import is_analyzed
-from ..messages.user_errors import Refusal, is_linked
+from ..messages.user_errors import is_linked
 from . import part_writer
 
 _is_changed = False

@@ -10,9 +10,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.attribute_types import STORAGES, AttributeType, Domain, Values
 from ..blender.known_values import present
 from ..blender.registered_settings import mesh_settings
-from ..mesh_data.attribute_values import STORAGES, AttributeType, Domain, Values, kind_of, read_attribute, store_values
+from ..mesh_data.attribute_values import kind_of, read_attribute, store_values
 from ..mesh_data.mesh_arrays import own_names, remove_own_attributes
 from ..mesh_state.schema import MOST_LABELS
 from ..mesh_state.state import is_analyzed, read

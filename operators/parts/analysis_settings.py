@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.mesh_analysis import AnalysisInput
+from ...tasks.recent_analyses import EngineOptions
 from ..blender.known_values import mesh_of
-from ..jobs.recent_analyses import EngineOptions
 from ..mesh_data import mesh_arrays
 from .choice_items import ATTRIBUTE, EIGENFUNCTION, identifier, word
 
@@ -43,24 +44,6 @@ class AnalysisSettings:
 
 
 SETTINGS = tuple(field.name for field in fields(AnalysisSettings))
-
-
-@dataclass(frozen=True, eq=False)
-class AnalysisInput:
-    """A mesh as it was read, and what its analysis is asked for.
-
-    Attributes
-    ----------
-    name : str
-        Of the object, for the user.
-    arrays : MeshArrays
-    options : EngineOptions
-        Keyword arguments of the engine's analysis.
-    """
-
-    name: str
-    arrays: mesh_arrays.MeshArrays
-    options: EngineOptions
 
 
 def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:

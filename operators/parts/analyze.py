@@ -7,15 +7,15 @@ from functools import partial
 
 import bpy
 
+from ...tasks import mesh_analysis, recent_analyses
+from ...tasks.mesh_analysis import AnalysisResult
 from ..blender.known_values import present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import job_status
-from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.viewport import show_vertex_colours
 from . import mesh_segmentation
 from .analysis_request import AnalysisRequest
-from .mesh_segmentation import AnalysisResult
 
 
 class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
@@ -27,7 +27,7 @@ class EIGENPARTS_OT_analyze(AnalysisRequest, bpy.types.Operator):
 
     def begin(self, context: bpy.types.Context) -> tuple[Callable[..., AnalysisResult], MeshHandle]:
         given = mesh_segmentation.read(context, present(context.object), self.analysis_settings())
-        analyze = partial(mesh_segmentation.analyze, given, analysis_of=recent_analyses.analyze_and_keep)
+        analyze = partial(mesh_analysis.analyze, given, analysis_of=recent_analyses.analyze_and_keep)
         return analyze, MeshHandle.of(present(context.object))
 
     def finish(self, context: bpy.types.Context, handle: MeshHandle, result: AnalysisResult) -> Outcome:

@@ -3,28 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 import bpy
 
-from ... import compute
+from ...tasks.mesh_analysis import AnalyzedShape, analyze_topology
 from ..blender.known_values import present
 from ..blender.outcome import Outcome
-from ..jobs import recent_analyses
 from ..jobs.mesh_handle import MeshHandle
-from ..mesh_data.world_shape import Stretch
 from ..messages.sentences import Messages
 from .analysis_request import AnalysisRequest
-from .analysis_settings import AnalysisInput, read_input
-
-
-@dataclass(frozen=True, eq=False)
-class AnalyzedShape:
-    """The analysis of a shape, and the stretch from its mesh to it."""
-
-    analysis: compute.Analysis
-    stretch: Stretch
+from .analysis_settings import read_input
 
 
 class FreshAnalysis(AnalysisRequest):
@@ -42,11 +31,3 @@ class FreshAnalysis(AnalysisRequest):
     def show(self, context: bpy.types.Context, obj: bpy.types.Object, shape: AnalyzedShape) -> str:
         """Show something of the analysis of an object, and return a sentence about it."""
         raise NotImplementedError
-
-
-def analyze_topology(given: AnalysisInput, progress: compute.Progress) -> AnalyzedShape:
-    """Return an analysis with its persistence diagram; knows nothing of Blender, so any thread may do it."""
-    analysis = recent_analyses.recall(given.arrays, given.options, progress)
-    # The longer part of the topology is made here, in the thread.
-    _ = analysis.diagram
-    return AnalyzedShape(analysis, given.arrays.stretch)

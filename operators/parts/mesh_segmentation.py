@@ -1,62 +1,24 @@
 """Use case: a mesh analyzed and divided into parts, the same from the window, from scripts and on the command line.
 
-``read`` takes what is needed from an object, ``analyze`` computes on values alone, in any thread, and ``write`` puts
-the result on the mesh and returns what is to be told.
+``read`` takes what is needed from an object, `mesh_analysis` computes on values alone, in any process, and ``write``
+puts the result on the mesh and returns what is to be told.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.level_choice import LevelChoice
+from ...tasks.mesh_analysis import AnalysisInput, AnalysisResult
 from ..blender.known_values import mesh_of
-from ..jobs import recent_analyses
-from ..mesh_state import analysis_writer, function_hints, palette, state
-from ..mesh_state.stored_analysis import BorderSource, StoredAnalysis
+from ..mesh_state import analysis_writer, function_hints, state
 from ..messages.sentences import Messages
 from ..outputs import output_registry, part_writer
-from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
-from .analysis_settings import AnalysisInput, AnalysisSettings, read_input
-
-
-@dataclass(frozen=True, eq=False)
-class AnalysisResult:
-    """The part of an analysis that a mesh keeps.
-
-    Attributes
-    ----------
-    stored : StoredAnalysis
-    source : BorderSource
-    description : str
-        The field, in words.
-    warnings : tuple of str
-    seconds : float
-        Time of the analysis.
-    polygon_of_triangle : (T,) int64
-    place_of_vertex : (V,) int64
-        The vertex that stands for each where several lie at one place along a seam.
-    swatches : dict of int to int
-        The place in the palette of the colour of each part.
-    hints : tuple of FunctionHint
-    """
-
-    stored: StoredAnalysis
-    source: BorderSource
-    description: str
-    warnings: tuple[str, ...]
-    seconds: float
-    polygon_of_triangle: NDArray[np.int64]
-    place_of_vertex: NDArray[np.int64]
-    swatches: dict[int, int]
-    hints: tuple[compute.FunctionHint, ...] = ()
+from .analysis_settings import AnalysisSettings, read_input
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,17 +39,6 @@ def read(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSe
     """
     output_registry.refuse_foreign_results(state.read(mesh_of(obj)))
     return read_input(context, obj, settings)
-
-
-def analyze(
-    given: AnalysisInput,
-    progress: compute.Progress,
-    analysis_of: Callable[..., compute.Analysis] = recent_analyses.analyze,
-) -> AnalysisResult:
-    """Run the engine; knows nothing of Blender, so any thread may do it."""
-    start = time.perf_counter()
-    analysis = analysis_of(given.arrays, given.options, progress)
-    return result_of(analysis, given, time.perf_counter() - start)
 
 
 def write(
@@ -124,27 +75,3 @@ def store(mesh: bpy.types.Mesh, result: AnalysisResult) -> tuple[str, ...]:
         place_of_vertex=result.place_of_vertex,
         swatches=result.swatches,
     )
-
-
-def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) -> AnalysisResult:
-    """Return the part of an analysis that a mesh keeps; knows nothing of Blender either."""
-    part_tree = analysis.part_tree(given.arrays.polygon_of_triangle)
-    heights = compute.vertex_heights(analysis.surface, analysis.field)
-    is_function = isinstance(given.options["field"], int)
-    return AnalysisResult(
-        stored=StoredAnalysis(part_tree, given.options["shells"], given.arrays.stretch),
-        source=BorderSource(analysis.profile(given.arrays.edges), heights),
-        description=_description(given.options["field"]),
-        warnings=analysis.warnings,
-        seconds=seconds,
-        polygon_of_triangle=given.arrays.polygon_of_triangle,
-        place_of_vertex=analysis.surface.vertex_of_input,
-        swatches=compute.places_at_all_levels(part_tree, len(palette.PARTS)),
-        hints=compute.judge_eigenfunctions(analysis.eigenbasis) if is_function else (),
-    )
-
-
-def _description(field: Any) -> str:
-    if isinstance(field, int):
-        return f"Eigenfunction {field}"
-    return "Diffusion" if isinstance(field, str) else "Own values"

@@ -6,13 +6,14 @@ import bpy
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 from mathutils import Vector
 
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import job_status, mesh_settings
 from ..blender.typed_properties import FloatVectorProperty, TypedProperties
 from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import in_language
-from ..messages.user_errors import Refusal, refusals_told
+from ..messages.user_errors import refusals_told
 from ..outputs.division import PART
 
 HOW = "Click a part; ESC or right click when done."

@@ -5,13 +5,14 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.attribute_types import Domain
+from ...tasks.refusals import Refusal
 from ..blender.known_values import elements_of, mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import mesh_settings
 from ..blender.typed_properties import BoolProperty, IntProperty, TypedProperties
-from ..mesh_data.attribute_values import Domain
 from ..mesh_data.mesh_arrays import read_own_integers
-from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
+from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs.division import PART
 
 # The property of operators that are about one part.

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..mesh_data.custom_normals import normals_kept
@@ -12,7 +13,7 @@ from ..mesh_data.mesh_arrays import remove_own_attributes
 from ..mesh_state.schema import ATTRIBUTES
 from ..mesh_state.state import forget, is_analyzed_for, read
 from ..messages.sentences import tell
-from ..messages.user_errors import Refusal, can_use_active_mesh, refusals_told
+from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs.output_registry import result_attributes
 from ..outputs.ownership import mend
 from ..outputs.part_writer import read_labels

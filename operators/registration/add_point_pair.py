@@ -4,13 +4,14 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import point_pairs
 from ..blender.typed_properties import IntProperty, StringProperty, TypedProperties
 from ..mesh_data.viewport import redraw_views
 from ..mesh_state.point_pairs import PointEnd, numbered_pairs, shown_places
-from ..messages.user_errors import Refusal, refusals_told
+from ..messages.user_errors import refusals_told
 from ..parts.pick import NOTHING, first_hit, ray_under, show_in_headers, view_under
 
 FIRST = "Click a point of one mesh; ESC or right click to stop."

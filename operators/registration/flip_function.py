@@ -2,10 +2,10 @@
 
 import bpy
 
+from ...tasks.match_options import MatchOptions
+from ...tasks.refusals import Refusal
 from ..blender.typed_properties import IntProperty, TypedProperties
-from ..mesh_state.registration_record import Match
-from ..messages.user_errors import Refusal
-from .match_options import MatchOptions, remembered_options
+from ..mesh_state.registration_record import Match, remembered_options
 from .mesh_registration import SHOWN_FUNCTIONS
 from .repeated_registration import RepeatedRegistration
 

@@ -12,6 +12,11 @@ from dataclasses import asdict, dataclass
 import bpy
 
 from ... import compute
+from ...tasks.level_choice import LevelChoice
+from ...tasks.match_options import MatchOptions
+from ...tasks.mesh_analysis import AnalysisInput
+from ...tasks.refusals import Refusal, in_name_of
+from ...tasks.shape_registration import CORRECTED_BEFORE, PreparedReference, RegisteredShape, Registration, ShownParts
 from ..blender.known_values import mesh_of, present
 from ..mesh_data.unfinished_meshes import modifiers_that_add, unfinished
 from ..mesh_data.world_shape import users_of
@@ -21,15 +26,12 @@ from ..mesh_state.part_table import PartTable
 from ..mesh_state.references import registered_objects
 from ..mesh_state.state import MeshState, read
 from ..messages.sentences import Messages
-from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
+from ..messages.user_errors import refuse_unwritable
 from ..outputs import output_registry, part_writer
-from ..outputs.level_choice import LevelChoice
 from ..outputs.rollback import all_or_nothing
 from ..parts import mesh_segmentation
-from ..parts.analysis_settings import AnalysisInput, AnalysisSettings
+from ..parts.analysis_settings import AnalysisSettings
 from ..parts.mesh_segmentation import Segmented
-from .match_options import MatchOptions
-from .shape_registration import CORRECTED_BEFORE, PreparedReference, RegisteredShape, Registration, ShownParts
 
 # Functions whose signs can be given, and that are shown.
 SHOWN_FUNCTIONS = 8

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import bpy
 
-from ..mesh_state.registration_record import Match
-from ..messages.user_errors import Refusal
-from .match_options import MatchOptions, remembered_options
+from ...tasks.match_options import MatchOptions
+from ...tasks.refusals import Refusal
+from ..mesh_state.registration_record import Match, remembered_options
 from .repeated_registration import RepeatedRegistration
 
 

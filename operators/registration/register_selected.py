@@ -4,15 +4,16 @@ from collections.abc import Callable
 
 import bpy
 
+from ...tasks.match_options import MatchOptions
+from ...tasks.refusals import Refusal
+from ...tasks.shape_registration import Registration
 from ..blender.known_values import present
 from ..blender.typed_properties import BoolProperty, TypedProperties
 from ..jobs import background
 from ..mesh_data.selected_meshes import other_meshes
-from ..messages.user_errors import Refusal, can_use_active_mesh
+from ..messages.user_errors import can_use_active_mesh
 from ..parts.analysis_request import AnalysisRequest
-from .match_options import MatchOptions
 from .registration_operator import RegistrationHandles, RegistrationOperator
-from .shape_registration import Registration
 
 NOTHING_ELSE = "Select the meshes to register, and last the one that has the parts."
 

@@ -8,6 +8,8 @@ from functools import partial
 
 import bpy
 
+from ...tasks.match_options import MatchOptions
+from ...tasks.shape_registration import Registration, register_all
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import job_status
 from ..jobs.background import BackgroundOperator
@@ -16,8 +18,6 @@ from ..mesh_data.viewport import show_vertex_colours
 from ..mesh_state.point_pairs import points_between
 from ..parts.analysis_settings import AnalysisSettings
 from . import mesh_registration
-from .match_options import MatchOptions
-from .shape_registration import Registration, register_all
 
 
 @dataclass(frozen=True)

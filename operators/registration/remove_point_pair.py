@@ -2,11 +2,12 @@
 
 import bpy
 
+from ...tasks.refusals import Refusal
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import point_pairs
 from ..blender.typed_properties import IntProperty, TypedProperties
 from ..mesh_data.viewport import redraw_views
-from ..messages.user_errors import Refusal, refusals_told
+from ..messages.user_errors import refusals_told
 
 
 class EIGENPARTS_OT_remove_point_pair(TypedProperties, bpy.types.Operator):

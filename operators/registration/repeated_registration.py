@@ -9,17 +9,18 @@ from typing import Any
 
 import bpy
 
+from ...tasks.match_options import MatchOptions
+from ...tasks.refusals import Refusal
+from ...tasks.shape_registration import Registration
 from ..blender.known_values import mesh_of, present
 from ..blender.registered_settings import analysis_settings
 from ..blender.typed_properties import StringProperty, TypedProperties
 from ..jobs import background
 from ..mesh_state import registration_record
 from ..mesh_state.state import read
-from ..messages.user_errors import Refusal, can_use_active_mesh
+from ..messages.user_errors import can_use_active_mesh
 from ..parts.analysis_settings import SETTINGS, AnalysisSettings
-from .match_options import MatchOptions
 from .registration_operator import RegistrationHandles, RegistrationOperator
-from .shape_registration import Registration
 
 DAMAGED = "The registration stored on this mesh is damaged; register the selected meshes again."
 

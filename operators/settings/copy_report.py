@@ -9,13 +9,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import analysis_settings, job_status
 from ..mesh_state.state import read
 from ..messages import unexpected_errors
 from ..messages.sentences import tell
-from ..messages.user_errors import Refusal
 
 MANIFEST = Path(__file__).parents[2] / "blender_manifest.toml"
 

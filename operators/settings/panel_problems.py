@@ -7,10 +7,11 @@ from typing import TypeVar
 import bpy
 
 from ...compute.errors import EngineError
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_with
 from ..blender.registered_settings import job_status
 from ..messages.unexpected_errors import OUT_OF_MEMORY
-from ..messages.user_errors import LINKED, Refusal, is_linked
+from ..messages.user_errors import LINKED, is_linked
 
 Settings = TypeVar("Settings", bound=bpy.types.PropertyGroup)
 Value = TypeVar("Value")

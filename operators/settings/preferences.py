@@ -1,4 +1,4 @@
-"""Preferences of the user in all files: the colours of parts, and how many cores an analysis may take."""
+"""Preferences of the user in all files: the colours of parts, and how many cores and processes may work."""
 
 from typing import Any, cast
 
@@ -7,7 +7,7 @@ import bpy
 from ..blender.known_values import present
 from ..blender.outcome import Outcome
 from ..blender.typed_properties import FloatVectorProperty, IntProperty, TypedProperties
-from ..jobs.threads import PACKAGE, user_preferences
+from ..jobs.user_preferences import PACKAGE, user_preferences
 from ..mesh_state import palette
 from ..outputs import recolouring
 
@@ -40,6 +40,14 @@ class EigenpartsPreferences(TypedProperties, bpy.types.AddonPreferences):
         min=0,
         soft_max=64,
     )
+    n_processes: int = IntProperty(
+        name="Processes",
+        description="In how many processes several meshes are analyzed and matched side by side; 0 for as many as half"
+        " of the processor cores, but no more than the memory allows",
+        default=0,
+        min=0,
+        soft_max=16,
+    )
     body: tuple[float, float, float] = _colour(
         "Body", "Color of what belongs to no part", palette.standard_colours()[0]
     )
@@ -48,6 +56,7 @@ class EigenpartsPreferences(TypedProperties, bpy.types.AddonPreferences):
         layout = present(self.layout)
         layout.use_property_split = True
         layout.prop(self, "n_threads")
+        layout.prop(self, "n_processes")
         layout.label(text="Colors of parts, for those that have no color of their own")
         grid = layout.grid_flow(row_major=True, columns=COLUMNS, even_columns=True, align=True)
         grid.use_property_split = False

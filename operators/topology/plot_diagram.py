@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.mesh_analysis import AnalyzedShape
 from ..blender.known_values import values_of
-from ..parts.fresh_analysis import AnalyzedShape, FreshAnalysis
+from ..parts.fresh_analysis import FreshAnalysis
 from .diagram_picture import Plotted, draw_diagram
 from .lettering import Lettering
 

@@ -7,14 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks.mesh_analysis import AnalyzedShape
+from ...tasks.mesh_shape import Stretch
 from ..blender.known_values import mesh_of, present
 from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
-from ..mesh_data.world_shape import Stretch
+from ..mesh_data.world_shape import as_transform
 from ..mesh_state.palette import COMPLEX_COLOURS
 from ..mesh_state.palette import COMPLEX_ROLE as ROLE
 from ..mesh_state.state import is_analyzed, read
 from ..outputs.rollback import nothing_left_behind
-from ..parts.fresh_analysis import AnalyzedShape, FreshAnalysis
+from ..parts.fresh_analysis import FreshAnalysis
 
 # The object whose complex a collection holds.
 OF_OBJECT = "eigenparts_complex"
@@ -116,7 +118,7 @@ def add_object(
     obj[ROLE] = role
     obj.parent = owner
     # Scaled as the owner, dots would be flattened with it.
-    obj.matrix_parent_inverse = stretch.inverse.as_transform
+    obj.matrix_parent_inverse = as_transform(stretch.inverse)
     obj.color.foreach_set((*COMPLEX_COLOURS[role], 1.0))
     collection.objects.link(obj)
     return obj

@@ -1,14 +1,11 @@
 """Operator: write the eigenfunctions of a mesh as attributes of its vertices."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 import bpy
-import numpy as np
-from numpy.typing import NDArray
 
-from ... import compute
+from ...tasks.vertex_functions import VertexFunctions, functions_on_vertices
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.typed_properties import IntProperty, TypedProperties
@@ -21,15 +18,6 @@ from ..messages.sentences import Messages
 from ..messages.user_errors import can_use_active_mesh
 
 PREFIX = "eigenfunction_"
-LOOSE_PARTS = "The mesh has {} loose parts; the eigenfunctions are those of the largest, and 0 on the others."
-
-
-@dataclass(frozen=True, eq=False)
-class VertexFunctions:
-    """Eigenfunctions as (V, k) float32 on the vertices, and what is to be told of the mesh."""
-
-    values: NDArray[np.float32]
-    warnings: tuple[str, ...]
 
 
 class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bpy.types.Operator):
@@ -55,7 +43,7 @@ class EIGENPARTS_OT_write_eigenfunctions(BackgroundOperator, TypedProperties, bp
         mesh = mesh_of(context.object)
         mesh_arrays.refuse_foreign(mesh, _attributes_there(mesh, self.n_functions))
         shape = mesh_arrays.read_object(context, present(context.object), use_modifiers=False)
-        solve = partial(_functions_on_vertices, shape, self.n_functions)
+        solve = partial(functions_on_vertices, shape, self.n_functions)
         return solve, MeshHandle.of(present(context.object))
 
     def finish(self, context: bpy.types.Context, handle: MeshHandle, result: VertexFunctions) -> Outcome:
@@ -81,17 +69,6 @@ def _attributes_there(mesh: bpy.types.Mesh, n_functions: int) -> tuple[OwnAttrib
     """Return those of the first attributes of functions whose names are taken: nobody can say how many there may be."""
     names = (name for name in mesh.attributes.keys() if name.removeprefix(PREFIX).isdecimal())  # noqa: SIM118
     return tuple(_attribute(number) for name in names if (number := int(name.removeprefix(PREFIX))) <= n_functions)
-
-
-def _functions_on_vertices(
-    arrays: mesh_arrays.MeshArrays, n_functions: int, progress: Callable[[float, str], None]
-) -> VertexFunctions:
-    """Return the smoothest functions; knows nothing of Blender, so any thread may do it."""
-    mesh = compute.TriangleMesh(arrays.vertices, arrays.triangles)
-    basis = compute.solve_eigenbasis(mesh, n_functions, progress=progress)
-    values = basis.functions[: len(arrays.vertices)].astype(np.float32)
-    n_parts = basis.surface.n_components
-    return VertexFunctions(values, (LOOSE_PARTS.format(n_parts),) if n_parts > 1 else ())
 
 
 register, unregister = bpy.utils.register_classes_factory((EIGENPARTS_OT_write_eigenfunctions,))

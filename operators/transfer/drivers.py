@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, cast
 
 import bpy
 
+from ...tasks.shape_key_settings import DriverTarget, Settings, ShapeKeyDriver
 from ..blender.known_values import data_of, mesh_of, present
-from .rna_settings import Settings, read_settings, write_settings
+from .rna_settings import read_settings, write_settings
 
 # Where data of each kind is found by its name.
 KEPT_IN = {
@@ -21,59 +22,18 @@ OBJECT, MESH, KEYS, RIG, BONES = "OBJECT", "MESH", "KEYS", "RIG", "BONES"
 QUOTED = re.compile(r'\["([^"]+)"\]')
 
 
-@dataclass(frozen=True)
-class DriverTarget:
-    """What a variable of a driver reads.
-
-    Attributes
-    ----------
-    role : str
-        What it is of the object that has the driver; nothing if it is anything else.
-    id_type, name : str
-        Of the data, so that it is found again.
-    settings : dict
-    """
-
-    role: str
-    id_type: str
-    name: str
-    settings: Settings
-
-
-@dataclass(frozen=True)
-class ShapeKeyDriver:
-    """A driver with its variables and its curve.
-
-    Attributes
-    ----------
-    setting : str
-        Of the shape key.
-    settings, curve : dict
-    variables : tuple
-        For each variable its settings and what it reads.
-    keyframes, modifiers : tuple of dict
-        Of the curve.
-    """
-
-    setting: str
-    settings: Settings
-    curve: Settings
-    variables: tuple[tuple[Settings, tuple[DriverTarget, ...]], ...]
-    keyframes: tuple[Settings, ...]
-    modifiers: tuple[Settings, ...]
-
-    def flipped(self) -> ShapeKeyDriver:
-        """Return the driver of the mirrored key: what it reads on the left is on the right."""
-        variables = tuple((settings, tuple(map(_flipped, targets))) for settings, targets in self.variables)
-        return replace(self, variables=variables)
-
-
 def read_drivers(obj: bpy.types.Object, block: bpy.types.ShapeKey) -> tuple[ShapeKeyDriver, ...]:
     """Return the drivers of a shape key of an object."""
     data = present(mesh_of(obj).shape_keys).animation_data
     start = f"{block.path_from_id()}."
     found = [curve for curve in data.drivers if curve.data_path.startswith(start)] if data else []
     return tuple(_read(obj, curve, curve.data_path.removeprefix(start)) for curve in found)
+
+
+def flipped_driver(driver: ShapeKeyDriver) -> ShapeKeyDriver:
+    """Return the driver of the mirrored key: what it reads on the left is on the right."""
+    variables = tuple((settings, tuple(map(_flipped, targets))) for settings, targets in driver.variables)
+    return replace(driver, variables=variables)
 
 
 def write_drivers(obj: bpy.types.Object, name: str, drivers: tuple[ShapeKeyDriver, ...]) -> set[str]:

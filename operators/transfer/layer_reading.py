@@ -7,18 +7,20 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks import layers
+from ...tasks.attribute_types import STORAGES
+from ...tasks.layers import Layer
+from ...tasks.refusals import Refusal
 from ..blender.known_values import data_of, mesh_of
 from ..mesh_data import mesh_arrays
-from ..mesh_data.attribute_values import STORAGES, kind_of, read_attribute
+from ..mesh_data.attribute_values import kind_of, read_attribute
 from ..mesh_state.schema import ATTRIBUTES
-from ..messages.user_errors import Refusal
 from ..outputs import material_slots
 from ..outputs.division import PART
 from ..outputs.part_writer import read_labels
-from . import layer_choices, layers
+from . import layer_choices
 from .drivers import rigs_of
-from .layers import Layer
-from .shape_keys import read_shape_keys
+from .shape_keys import flipped_settings, read_shape_keys
 
 # Attributes that begin with a point are Blender's own, but these are made by hand.
 MADE_BY_HAND = (".sculpt_face_set", ".sculpt_mask")
@@ -65,7 +67,7 @@ def read_layers(obj: bpy.types.Object, choice: LayerChoice) -> list[Layer]:
 def _with_side(layer: Layer) -> Layer:
     if layer.kind not in (layers.GROUP, layers.SHAPE_KEY):
         return layer
-    settings = layer.settings and layer.settings.flipped()
+    settings = layer.settings and flipped_settings(layer.settings)
     return replace(layer, name=bpy.utils.flip_name(layer.name), settings=settings)
 
 

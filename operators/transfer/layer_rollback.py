@@ -5,14 +5,14 @@ from contextlib import contextmanager
 
 import bpy
 
+from ...tasks import layers
+from ...tasks.layers import Layer
 from ..blender.known_values import mesh_of, present
 from ..mesh_data.attribute_values import read_attribute, store_values
 from ..outputs.rollback import all_or_nothing
-from . import layers
 from .drivers import remove_drivers
 from .layer_reading import read_weights
 from .layer_writing import fill_group
-from .layers import Layer
 from .shape_keys import read_key
 
 

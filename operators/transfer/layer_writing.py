@@ -9,17 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks import layers
+from ...tasks.attribute_types import Domain
+from ...tasks.layers import Layer
+from ...tasks.refusals import Refusal, in_name_of
 from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
-from ..mesh_data.attribute_values import Domain, read_attribute, store_values
+from ..mesh_data.attribute_values import read_attribute, store_values
 from ..mesh_state import state
-from ..messages.user_errors import Refusal, in_name_of
 from ..outputs import corner_colours
 from ..outputs.division import PART, Division
 from ..outputs.vertex_groups import active_group_kept
-from . import layers
 from .layer_reading import read_weights
-from .layers import Layer
 from .shape_keys import ABSOLUTE, write_shape_keys
 
 # Weights below this are left out of a vertex group.

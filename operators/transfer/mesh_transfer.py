@@ -14,20 +14,21 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.layer_mapping import MappedLayers, ShapeParts, TransferShape
+from ...tasks.layers import PARTS, Layer
+from ...tasks.match_options import NO_POINTS, GivenPoints, MatchOptions
+from ...tasks.mesh_shape import MeshArrays
+from ...tasks.refusals import Refusal, in_name_of
 from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
-from ..mesh_data.unfinished_meshes import modifiers_that_add
-from ..mesh_state.point_pairs import NO_POINTS, GivenPoints
-from ..mesh_state.registration_record import SURE
+from ..mesh_data.unfinished_meshes import modifiers_that_add, unfinished
+from ..mesh_state.registration_record import SURE, remembered_options
 from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import Messages
-from ..messages.user_errors import Refusal, in_name_of, refuse_unwritable
-from ..registration.match_options import MatchOptions, remembered_options
-from .layer_mapping import MappedLayers, ShapeParts, TransferShape
+from ..messages.user_errors import refuse_unwritable
 from .layer_reading import LayerChoice, read_layers, read_parts
 from .layer_rollback import layers_or_nothing
 from .layer_writing import WHOLE, Mix, refuse_obstacles, write_layers
-from .layers import PARTS, Layer
 
 HAS_PARTS = "{} was analyzed and keeps its own parts; Register Selected gives it those of {}."
 FOUND_BY = {
@@ -135,7 +136,7 @@ def _read_shape(
     return _shape_of(obj, arrays, options)
 
 
-def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: MatchOptions) -> TransferShape:
+def _shape_of(obj: bpy.types.Object, arrays: MeshArrays, options: MatchOptions) -> TransferShape:
     """Return an object in the form that layers are transferred in."""
     mesh = mesh_of(obj)
     corners = np.empty(3 * len(mesh.loop_triangles), dtype=np.int32)
@@ -148,7 +149,7 @@ def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: Ma
         corner_vertex=mesh_arrays.vertex_of_corner(mesh).astype(np.int64),
         corner_polygon=np.repeat(np.arange(len(n_corners)), n_corners),
         options=options,
-        modifiers=modifiers_that_add(obj),
+        unfinished=unfinished(obj.name, modifiers_that_add(obj)),
         parts=_parts_of(obj),
     )
 
@@ -156,9 +157,11 @@ def _shape_of(obj: bpy.types.Object, arrays: mesh_arrays.MeshArrays, options: Ma
 def _parts_of(obj: bpy.types.Object) -> ShapeParts | None:
     """Return the parts that an object shows; None if it has none, or none that can be read: they only name places."""
     try:
-        return next((ShapeParts(parts.values[:, 0], read(mesh_of(obj)).parts) for parts in read_parts(obj)), None)
+        shown = [parts.values[:, 0] for parts in read_parts(obj)]
+        table = read(mesh_of(obj)).parts
     except Refusal:
         return None
+    return ShapeParts(shown[0], {part: table.name_of(part) for part in np.unique(shown[0]).tolist()}) if shown else None
 
 
 def _messages(

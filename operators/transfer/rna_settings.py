@@ -6,7 +6,8 @@ from typing import Any
 
 import bpy
 
-Settings = dict[str, Any]
+from ...tasks.shape_key_settings import Settings
+
 PLAIN = ("BOOLEAN", "INT", "FLOAT", "STRING", "ENUM")
 
 

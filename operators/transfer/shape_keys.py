@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from ... import compute
+from ...tasks import layers
+from ...tasks.layers import Layer
+from ...tasks.refusals import Refusal
+from ...tasks.shape_key_settings import ShapeKeySettings
 from ..blender.known_values import mesh_of, present
-from ..messages.user_errors import Refusal
-from . import layers
-from .drivers import ShapeKeyDriver, read_drivers, write_drivers
-from .layers import Layer
-from .rna_settings import Settings, read_settings, write_settings
+from .drivers import flipped_driver, read_drivers, write_drivers
+from .rna_settings import read_settings, write_settings
 
 ABSOLUTE = "The shape keys of {} are absolute; only relative ones can be transferred."
 STRANGE = '{}: nothing here takes the place of "{}", which the driver of the shape key "{}" reads.'
@@ -23,35 +24,6 @@ STRANGE = '{}: nothing here takes the place of "{}", which the driver of the sha
 NOT_CARRIED = ("name", "lock_shape", "select")
 # The least that a slider can go down to.
 LOWEST = -10.0
-
-
-@dataclass(frozen=True)
-class ShapeKeySettings:
-    """All that a shape key is set to.
-
-    Attributes
-    ----------
-    values : dict
-        Value, range, mute, interpolation and the name of the vertex group.
-    relative_to : str
-        The key that it starts from; nothing for the Basis.
-    drivers : tuple of ShapeKeyDriver
-    """
-
-    values: Settings
-    relative_to: str
-    drivers: tuple[ShapeKeyDriver, ...]
-
-    @property
-    def vertex_group(self) -> str:
-        """Name of the vertex group that limits the key; empty if there is none."""
-        return str(self.values["vertex_group"])
-
-    def flipped(self) -> ShapeKeySettings:
-        """Return the settings of the mirrored key."""
-        group, start = (name and bpy.utils.flip_name(name) for name in (self.vertex_group, self.relative_to))
-        drivers = tuple(driver.flipped() for driver in self.drivers)
-        return replace(self, values=self.values | {"vertex_group": group}, relative_to=start, drivers=drivers)
 
 
 def read_shape_keys(obj: bpy.types.Object) -> Iterator[Layer]:
@@ -64,6 +36,13 @@ def read_shape_keys(obj: bpy.types.Object) -> Iterator[Layer]:
     for block in sorted(keys.key_blocks[1:], key=lambda block: _depth(block, len(keys.key_blocks))):
         moved = read_key(block) - read_key(block.relative_key)
         yield Layer(layers.SHAPE_KEY, block.name, moved, settings=_read_settings(obj, block))
+
+
+def flipped_settings(settings: ShapeKeySettings) -> ShapeKeySettings:
+    """Return the settings of the mirrored key."""
+    group, start = (name and bpy.utils.flip_name(name) for name in (settings.vertex_group, settings.relative_to))
+    drivers = tuple(flipped_driver(driver) for driver in settings.drivers)
+    return replace(settings, values=settings.values | {"vertex_group": group}, relative_to=start, drivers=drivers)
 
 
 def read_key(block: bpy.types.ShapeKey) -> NDArray[np.float64]:

@@ -10,6 +10,8 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...tasks.layer_mapping import MappedLayers, map_to_all
+from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.registered_settings import transfer_settings
@@ -17,10 +19,8 @@ from ..jobs.background import BackgroundOperator
 from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data.selected_meshes import other_meshes
 from ..mesh_state.point_pairs import points_between
-from ..messages.user_errors import Refusal
 from ..registration.register_selected import can_start_with_others
 from . import mesh_transfer
-from .layer_mapping import MappedLayers, TransferShape, map_to_all
 from .layer_reading import LayerChoice
 from .layer_writing import Mix
 from .mesh_transfer import TransferSettings, TransferSource
@@ -70,7 +70,7 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
             for obj in targets
         ]
         handles = TransferHandles(source, tuple(MeshHandle.of(obj) for obj in targets), settings)
-        return partial(_map_layers, source, shapes, settings), handles
+        return partial(map_to_all, source.shape, source.layers, shapes, fills=settings.fills_unsure), handles
 
     def finish(self, context: bpy.types.Context, handles: TransferHandles, mapped: list[MappedLayers]) -> Outcome:
         objects = [handle.find_object() for handle in handles.targets]
@@ -86,15 +86,6 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
         names = tuple(name.strip() for name in self.group_names.split(",") if name.strip())
         choice = LayerChoice(frozenset(self.layers), self.groups, names, self.mirrored)
         return TransferSettings(choice, Mix(self.factor, self.mask), self.unsure == "FILL", self.use_modifiers)
-
-
-def _map_layers(
-    source: TransferSource,
-    shapes: list[TransferShape],
-    settings: TransferSettings,
-    progress: Callable[[float, str], None],
-) -> list[MappedLayers]:
-    return map_to_all(source.shape, source.layers, shapes, fills=settings.fills_unsure, progress=progress)
 
 
 def _select(mesh: bpy.types.Mesh, is_selected: NDArray[np.bool_]) -> None:

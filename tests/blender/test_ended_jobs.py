@@ -1,14 +1,13 @@
 """Whatever ends a job, nothing is written."""
 
-import threading
 from contextlib import suppress
 
 import bpy
 import pytest
 
+from tests.blender import worker_tasks as tasks
 from tests.blender.conftest import add_object
 from tests.blender.failing import Failing, all_of
-from tests.blender.test_background import wait_for
 
 
 def test_a_cancel_at_any_step_of_progress_changes_nothing(analyzed, monkeypatch):
@@ -61,24 +60,15 @@ def test_out_of_memory_in_the_engine_changes_nothing(analyzed, monkeypatch):
 
 
 def test_a_job_ends_with_the_file_it_was_started_in(extension, star_object):
-    """Loading a file makes Blender call ``cancel``; the thread stops at its next report."""
+    """Loading a file makes Blender call ``cancel``."""
     from eigenparts.operators.jobs import background
 
-    go_on, started, reached = threading.Event(), threading.Event(), []
-
-    def work(progress):
-        started.set()
-        go_on.wait(10)
-        progress(0.5, "Half way")
-        reached.append("the end")
-
-    job = background._start(work)
-    started.wait(10)
+    job = background._start(tasks.sleep_for_ever)
+    process = job._worker.process
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     background.stop_running_job()
-    go_on.set()
-    wait_for(lambda: job.is_done)
-    assert (reached, background.is_running()) == ([], False)
+    assert process.returncode is not None
+    assert not background.is_running()
 
 
 def test_a_result_for_a_file_that_is_gone_is_dropped(star_object, extension):
@@ -91,23 +81,11 @@ def test_a_result_for_a_file_that_is_gone_is_dropped(star_object, extension):
         handle.find_mesh()
 
 
-def test_the_thread_of_a_job_does_not_keep_blender_open(extension):
-    from eigenparts.operators.jobs import job
-
-    go_on = threading.Event()
-    running = job.Job(lambda progress: go_on.wait(10))
-    assert all(thread.daemon for thread in threading.enumerate() if thread.name == "eigenparts")
-    go_on.set()
-    wait_for(lambda: running.is_done)
-
-
 def test_disabling_the_extension_stops_the_job(extension, star_object):
     from eigenparts.operators.jobs import background
 
-    go_on = threading.Event()
-    job = background._start(lambda progress: go_on.wait(10))
+    job = background._start(tasks.sleep_for_ever)
     extension.unregister()
     assert job.is_cancelled
-    go_on.set()
     extension.register()
     assert not background.is_running()

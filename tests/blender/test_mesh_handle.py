@@ -15,7 +15,7 @@ def handle(star_object):
 
 @pytest.fixture
 def refused(extension):
-    from eigenparts.operators.messages.user_errors import Refusal
+    from eigenparts.tasks.refusals import Refusal
 
     return lambda sentence: pytest.raises(Refusal, match=sentence)
 

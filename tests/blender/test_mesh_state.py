@@ -19,7 +19,9 @@ def state_of(obj):
 
 
 def test_the_state_on_a_mesh_is_opened_in_one_file():
-    paths = [path for folder in ("operators", "ui", "cli", "compute") for path in (ROOT / folder).rglob("*.py")]
+    paths = [
+        path for folder in ("operators", "ui", "cli", "tasks", "compute") for path in (ROOT / folder).rglob("*.py")
+    ]
     opening = [path.name for path in paths if re.search(rf"\bSTATE\b|{STATE}", path.read_text())]
     assert opening == ["state.py"]
 

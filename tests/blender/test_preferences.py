@@ -89,7 +89,7 @@ def test_only_meshes_of_ours_that_can_be_written_to_are_recoloured(preferences, 
 
 
 def test_threads_reach_the_library_of_scipy(extension):
-    from eigenparts.operators.jobs import threads
+    from eigenparts.tasks import threads
 
     asked = [
         getattr(library, name)
@@ -173,7 +173,7 @@ def test_an_error_that_nobody_foresaw_becomes_a_sentence(extension):
 
 def test_a_refusal_is_no_fault(extension):
     from eigenparts.operators.messages import unexpected_errors
-    from eigenparts.operators.messages.user_errors import Refusal
+    from eigenparts.tasks.refusals import Refusal
 
     listener = Listener()
     with unexpected_errors.errors_told(listener):

@@ -58,7 +58,7 @@ def overwrite_a_layer(mesh, *_):
 
 
 def leave_an_object(operator, state):
-    from eigenparts.operators.messages.user_errors import Refusal
+    from eigenparts.tasks.refusals import Refusal
 
     bpy.data.objects.new("left", None)
     raise Refusal("It cannot be.")

@@ -342,8 +342,8 @@ def test_a_job_that_is_cancelled_changes_nothing(rest, fist):
     """Cancelled as the window does it: at a report of progress while the pair is matched."""
     from eigenparts import compute as engine
     from eigenparts.operators.parts.analysis_settings import AnalysisSettings
-    from eigenparts.operators.registration.match_options import MatchOptions
     from eigenparts.operators.registration.registration_operator import RegistrationOperator
+    from eigenparts.tasks.match_options import MatchOptions
 
     def cancel(fraction, text):
         if "order and signs" in text:

@@ -93,8 +93,8 @@ def test_what_is_unsure_is_filled_in_across_seams(shape):
     """The fill of a piece whose vertices are all unsure comes from beyond its seams."""
     from eigenparts import compute
     from eigenparts.operators.mesh_data.mesh_arrays import read_mesh
-    from eigenparts.operators.transfer.layer_mapping import ShapeMap, TransferShape, _LayerMapper
-    from eigenparts.operators.transfer.layers import Layer
+    from eigenparts.tasks.layer_mapping import ShapeMap, TransferShape, _LayerMapper
+    from eigenparts.tasks.layers import Layer
 
     vertices, faces = flat_shaded(shape)
     arrays = read_mesh(add_object(vertices, faces).data)

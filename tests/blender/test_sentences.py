@@ -15,8 +15,8 @@ PLACES = {"progress": 1, "_report": 1, "in_language": 0}
 
 
 def sentences_of_source():
-    """Return all sentences in the code of operators and engine, with {} where a value is filled in."""
-    paths = [*(ROOT / "operators").rglob("*.py"), *(ROOT / "compute").rglob("*.py")]
+    """Return all sentences in the code of operators, tasks and engine, with {} where a value is filled in."""
+    paths = [path for folder in ("operators", "tasks", "compute") for path in (ROOT / folder).rglob("*.py")]
     found = set().union(*(texts_of(ast.parse(path.read_text())) for path in paths))
     begun = {text for text in found if text[:1] in ("{", '"') or text[:1].isupper()}
     return {text for text in begun if re.search("[a-z]{3}", text)}

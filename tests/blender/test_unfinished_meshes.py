@@ -27,7 +27,7 @@ def refused_transfer():
 
 
 def test_a_half_that_takes_nothing_is_told_by_its_modifier(half, monkeypatch):
-    from eigenparts.operators.transfer import layer_mapping
+    from eigenparts.tasks import layer_mapping
 
     monkeypatch.setattr(layer_mapping, "NO_MATCH", 1.1)
     assert 'The modifier "To the Left" of half adds to the mesh' in refused_transfer()

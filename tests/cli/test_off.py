@@ -24,7 +24,7 @@ def parse_off():
 @pytest.fixture(scope="module")
 def refusal():
     load_extension()
-    from eigenparts.operators.messages.user_errors import Refusal
+    from eigenparts.tasks.refusals import Refusal
 
     return Refusal
 

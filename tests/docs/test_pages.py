@@ -28,7 +28,7 @@ every_page_of_the_guide = pytest.mark.parametrize("page", GUIDE, ids=name_of)
 FOREIGN_OPTIONS = {"--background", "--command", "--quiet", "--nthreads", "--nworkers"} | {
     *("--online-mode", "--name", "--url", "--enable"),
 }
-FOLDERS = "benchmarks|cli|compute|docs|examples|operators|presets|tests|tools|ui"
+FOLDERS = "benchmarks|cli|compute|docs|examples|operators|presets|tasks|tests|tools|ui"
 EXAMPLE = re.compile(r"blender --background --command eigenparts ((?:segment|register|transfer|batch) [^\n`]+)")
 
 
@@ -131,7 +131,7 @@ def test_the_sentences_of_troubleshooting_are_those_of_the_code():
     rows = re.findall(r"^\| ([^|]+) \|.*\|$", (ROOT / "docs/guide/troubleshooting.md").read_text(), re.MULTILINE)
     sentences = [row for row in rows if row not in ("it says", "---")]
     assert len(sentences) > 30
-    known = texts("operators", "compute", "ui")
+    known = texts("operators", "tasks", "compute", "ui")
     patterns = {sentence: ".*".join(map(re.escape, sentence.split("…"))) for sentence in sentences}
     assert [name for name, pattern in patterns.items() if not any(re.fullmatch(pattern, text) for text in known)] == []
 

@@ -34,8 +34,9 @@ INNER = {
     ),
     *("divisible", "drawn_borders", "face_graph", "first_own_part", "hill_of", "joined_parts", "label_branches"),
     *(
-        "label_matched",
+        "label_mapped",
         "majority_of_polygons",
+        "map_to_reference",
         "match_divisible",
         "match_members",
         "match_shape_diagrams",

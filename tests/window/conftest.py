@@ -3,6 +3,7 @@
 import os
 import shutil
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,13 @@ TITLES_OF_PANELS = (
 @pytest.fixture(scope="session")
 def application():
     """Blender with the extension installed from the zip."""
+    with installed() as window:
+        yield window
+
+
+@contextmanager
+def installed():
+    """Start Blender with settings of its own, and install the extension from the zip."""
     missing = what_is_missing() if PACKAGE in os.environ else "make test-window runs these."
     if missing:
         pytest.skip(missing)
@@ -46,8 +54,10 @@ def application():
             f"bpy.ops.extensions.package_install_files("
             f"filepath={str(archive)!r}, repo='user_default', enable_on_install=True)"
         )
-        yield window
-        window.close()
+        try:
+            yield window
+        finally:
+            window.close()
 
 
 @pytest.fixture

@@ -1,11 +1,16 @@
 """Analyze in the window: the panel, progress, ESC, and what happens to the mesh meanwhile."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from tests.window.conftest import MODULE, add_character, analyze, choose
+from tests.blender.test_background import wait_for
+from tests.window.conftest import MODULE, add_character, analyze, choose, installed
 
 STATUS = "bpy.context.window_manager.eigenparts"
+ERRORS = f"sys.modules['{MODULE}.operators.messages.unexpected_errors']"
+WORKER = f"sys.modules['{MODULE}.operators.jobs.worker_process']._worker"
 # Pixels.
 SCREEN = 1600, 1000
 # Seconds; a user who presses ESC wants the window back by then.
@@ -89,6 +94,43 @@ def test_after_a_cancelled_job_the_next_one_comes_to_its_end(running):
     assert running.value("len(bpy.context.object.data.eigenparts.rows)") > 5
 
 
+def test_a_worker_that_is_killed_changes_nothing_and_is_there_again(window, humanoid, take):
+    add_character(window, humanoid)
+    before = names_on_mesh(window)
+    window.run(
+        "import sys\n"
+        "killed = []\n"
+        "def kill():\n"
+        f"    if {STATUS}.fraction == 0 or not {STATUS}.is_running:\n"
+        "        return 0.01\n"
+        f"    killed.append({WORKER}.process.pid)\n"
+        f"    {WORKER}.process.kill()\n"
+        "bpy.app.timers.register(kill)"
+    )
+    choose(window, "analyze")
+    window.wait_for(f"killed and not {STATUS}.is_running")
+    window.settle()
+    take("worker_killed")
+    assert names_on_mesh(window) == before
+    # The message goes away when the mouse leaves it.
+    window.point(250, 250)
+    window.settle()
+    analyze(window)
+
+
+def test_quitting_in_the_middle_leaves_nothing(humanoid):
+    with installed() as window:
+        window.run("import sys")
+        add_character(window, humanoid)
+        window.run("with over_view(): bpy.ops.eigenparts.analyze('INVOKE_DEFAULT')")
+        window.wait_for(f"{STATUS}.is_running")
+        process, folder = window.value(f"({WORKER}.process.pid, str({WORKER}.folder))")
+        assert Path(folder).is_dir()
+        window.run("bpy.ops.wm.quit_blender()")
+        wait_for(lambda: not Path(f"/proc/{process}").exists())
+        wait_for(lambda: not Path(folder).exists())
+
+
 def test_the_window_can_be_used_meanwhile(running):
     running.run("bpy.context.scene.cursor.location = (1, 2, 3)")
     running.press("N")
@@ -132,16 +174,16 @@ def test_an_error_that_nobody_foresaw_is_told_and_can_be_reported(window, hand, 
     before = names_on_mesh(window)
     window.run(
         "import sys\n"
-        f"module = sys.modules['{MODULE}.operators.analyze']\n"
-        "analyze_arrays = module.analyze_arrays\n"
+        f"module = sys.modules['{MODULE}.operators.parts.mesh_segmentation']\n"
+        "write = module.write\n"
         "def broken(*arguments): raise MemoryError('/home/somebody/file')\n"
-        "module.analyze_arrays = broken"
+        "module.write = broken"
     )
     choose(window, "analyze")
-    window.wait_for(f"sys.modules['{MODULE}.operators.faults'].last() is not None")
+    window.wait_for(f"{ERRORS}.last() is not None")
     window.settle()
     take("unexpected_error")
-    window.run("module.analyze_arrays = analyze_arrays")
+    window.run("module.write = write")
     # The message goes away when the mouse leaves it.
     window.point(250, 250)
     window.settle()
@@ -150,4 +192,4 @@ def test_an_error_that_nobody_foresaw_is_told_and_can_be_reported(window, hand, 
     window.wait_for("'MemoryError' in bpy.context.window_manager.clipboard")
     assert "somebody" not in window.value("bpy.context.window_manager.clipboard")
     analyze(window)
-    assert window.value(f"sys.modules['{MODULE}.operators.faults'].last() is None")
+    assert window.value(f"{ERRORS}.last() is None")

@@ -319,6 +319,8 @@ GERMAN: dict[str, str] = {
     # Preferences.
     "Threads": "Prozessorkerne",
     "Processor cores that an analysis may use; 0 leaves it to the libraries": "Prozessorkerne, die eine Analyse benutzen darf; 0 überlässt es den Bibliotheken",
+    "Processes": "Prozesse",
+    "In how many processes several meshes are analyzed and matched side by side; 0 for as many as half of the processor cores, but no more than the memory allows": "In wie vielen Prozessen mehrere Netze nebeneinander analysiert und zugeordnet werden; 0 für halb so viele wie Prozessorkerne, aber nicht mehr, als der Speicher erlaubt",
     "Body": "Körper",
     "Color of what belongs to no part": "Farbe dessen, was zu keinem Teil gehört",
     "Color of a part; after the last, the colors repeat": "Farbe eines Teils; nach der letzten wiederholen sie sich",

@@ -55,6 +55,8 @@ GERMAN_SENTENCES: dict[str, str] = {
     "Matching shapes of {} and {} vertices takes about {} of memory, and {} are free; decimate the meshes or close other programs.": "Gestalten von {} und {} Punkten abzugleichen braucht etwa {} Speicher, und {} sind frei; die Netze dezimieren oder andere Programme schließen.",
     "The memory is full; take elements of a lower order, or decimate the mesh.": "Der Speicher ist voll; Elemente niedrigerer Ordnung nehmen oder das Netz dezimieren.",
     "There is not enough memory for this; try linear elements or a mesh with fewer faces.": "Dafür reicht der Speicher nicht; lineare Elemente oder ein Netz mit weniger Flächen versuchen.",
+    "No process could be started for this, so Blender itself computed it, and could not be used meanwhile.": "Dafür konnte kein Prozess gestartet werden; Blender hat es selbst berechnet und war solange nicht zu benutzen.",
+    "The process that computed this has ended, perhaps for lack of memory; nothing was changed. Try it again.": "Der Prozess, der dies berechnete, ist zu Ende gegangen, vielleicht aus Mangel an Speicher; nichts wurde geändert. Bitte noch einmal versuchen.",
     "The Reeb graph of {} critical points is too large to be built; choose a lower level.": "Der Reeb-Graph von {} kritischen Punkten ist zu groß; eine niedrigere Stufe wählen.",
     # While it runs, and afterwards.
     "The mesh was deleted while it was analyzed.": "Das Netz wurde während der Analyse gelöscht.",
@@ -215,7 +217,6 @@ GERMAN_SENTENCES: dict[str, str] = {
     '{} critical points are in the collection "{}".': "{} kritische Punkte sind in der Sammlung „{}“.",
     # What a job is doing.
     "Eigenparts: {} ({}), ESC to cancel": "Eigenparts: {} ({}), Esc bricht ab",
-    "Waiting for the cancelled job to stop": "Warten, bis die abgebrochene Arbeit endet",
     "Starting": "Anfangen",
     "Done": "Fertig",
     "Checking the mesh": "Das Netz prüfen",

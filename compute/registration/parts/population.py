@@ -1,10 +1,10 @@
 """Registration of any number of shapes at once, through one reference."""
 
+import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import Executor, Future, wait
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol, TypeAlias, TypeVar
+from typing import Any, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,7 +26,7 @@ from .part_matching import ReferenceParts, partner_cuts, reference_parts, with_f
 from .transferred_labels import Divisible, FaceLabels, divisible, transfer_labels
 
 # Seconds between looks whether shapes in an executor are ready, and whether the user has cancelled.
-INTERVAL = 0.2
+INTERVAL = 0.05
 MATCHED = "Matched {} of {} shapes"
 COMPARED = "Compared {} of {} pairs of shapes"
 REGISTERED = "Registered {} of {} shapes"
@@ -35,6 +35,30 @@ CONTRADICTS = "Its matching contradicts those of the other shapes; look at its p
 Result = TypeVar("Result")
 # The numbers of two targets, the source first.
 NumberedPair: TypeAlias = tuple[int, int]
+
+
+class Pending(Protocol):
+    """A call that an executor runs, as `concurrent.futures.Future` is one."""
+
+    def done(self) -> bool:
+        """Whether it has ended."""
+        ...
+
+    def result(self) -> Any:
+        """Return what it returned, or raise what it raised."""
+        ...
+
+    def cancel(self) -> bool:
+        """Give it up, if it has not begun."""
+        ...
+
+
+class Executor(Protocol):
+    """Runs calls elsewhere, as those of `concurrent.futures` do: declared here, as that module loads threads."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Pending:
+        """Call a function elsewhere."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,10 +254,32 @@ def label_matched(
     progress : Progress, optional
         May raise `Cancelled`.
     """
+    to_reference = map_to_reference(reference, target, matching, section(progress, 0, 0.8))
+    progress(0.8, "Carrying the parts over")
+    return label_mapped(reference, target, matching, to_reference, first_free)
+
+
+@told_if_full
+def map_to_reference(reference: Reference, target: Divisible, matching: Matching, progress: Progress = silent) -> Ints:
+    """Return (n,) the point of the reference that each point of a shape corresponds to by a matching."""
     source = reference.shape.shape.mirrored() if matching.mirrored else reference.shape.shape
     pairs = point_pairs(matching.points, reference.shape.surface, target.surface, source, target.shape)
-    to_reference = point_map(source, target.shape, matching, section(progress, 0, 0.8), pairs)
-    progress(0.8, "Carrying the parts over")
+    return point_map(source, target.shape, matching, progress, pairs)
+
+
+@told_if_full
+def label_mapped(
+    reference: Reference, target: Divisible, matching: Matching, to_reference: Ints, first_free: int
+) -> FaceLabels:
+    """Divide a shape into the parts of the reference, which its points are mapped to.
+
+    Parameters
+    ----------
+    to_reference : (n,) int64
+        As ``map_to_reference`` returns it.
+    first_free : int
+        The least label for parts without a partner on the reference.
+    """
     cuts, level = partner_cuts(reference.parts, target, to_reference)
     cuts = with_first_free(cuts, reference.parts.given.highest, first_free)
     same_faces = (
@@ -327,10 +373,10 @@ def _run_in_executor(
     """Return the results in the order of the calls; those that have not begun are given up where this is cancelled."""
     futures = [executor.submit(function, *given) for given in arguments]
     try:
-        open_futures: set[Future[Result]] = set(futures)
-        while open_futures:
-            _, open_futures = wait(open_futures, timeout=INTERVAL)
-            n_done = len(futures) - len(open_futures)
+        n_done = 0
+        while n_done < len(futures):
+            time.sleep(INTERVAL)
+            n_done = sum(future.done() for future in futures)
             progress(n_done / len(futures), told.format(n_done, len(futures)))
         return [future.result() for future in futures]
     finally:

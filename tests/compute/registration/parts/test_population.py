@@ -108,7 +108,7 @@ def test_executors_give_what_a_loop_gives(ball, finer, pool):
 def test_a_cluster_gives_what_a_loop_gives(ball, finer):
     distributed = pytest.importorskip("distributed")
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
         cluster.get_client() as client,
     ):
         results = register([ball, finer, finer], executor=client.get_executor())

@@ -8,8 +8,8 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import compute
-from ..mesh_data.mesh_arrays import MeshArrays
+from .. import compute
+from .mesh_shape import MeshArrays
 from .recent_results import Recent, key_of
 
 # All their vertices together; each takes 1 to 10 kB, by the order of the elements.
@@ -25,7 +25,7 @@ class EngineOptions(TypedDict):
     shells: str
 
 
-_recent: Recent[compute.Analysis] = Recent(RECENT_VERTICES)
+_recent: Recent[compute.Analysis] = Recent("analyses", RECENT_VERTICES)
 
 
 def analyze(arrays: MeshArrays, options: EngineOptions, progress: compute.Progress) -> compute.Analysis:

@@ -4,13 +4,6 @@ import ctypes
 from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Protocol, cast
-
-import bpy
-
-from ..blender.known_values import present
-
-PACKAGE = __package__.rsplit(".", 2)[0]
 
 # Where their wheels keep the library, beside the package and inside it, and what the setting is called there.
 FOLDERS = ("../{package}.libs", ".dylibs")
@@ -21,30 +14,11 @@ SETTINGS = (
 
 
 def use_threads(n_threads: int) -> int:
-    """Let the matrix libraries use so many cores; return how many libraries heard it."""
-    setters = list(_setters())
+    """Let the matrix libraries use so many cores, as many as they like if 0; return how many libraries heard it."""
+    setters = list(_setters()) if n_threads else []
     for setter in setters:
         setter(n_threads)
     return len(setters)
-
-
-class Preferences(Protocol):
-    """The preferences, as far as they are read before they are registered."""
-
-    n_threads: int
-
-
-def user_preferences() -> Preferences | None:
-    """Return what the user prefers; None where Eigenparts is not installed as an extension, such as in a script."""
-    addon = present(bpy.context.preferences).addons.get(PACKAGE)
-    return cast(Preferences, addon.preferences) if addon is not None else None
-
-
-def use_preferred_threads() -> None:
-    """Let the matrix libraries use as many cores as the user prefers."""
-    preferences = user_preferences()
-    if preferences is not None and preferences.n_threads:
-        use_threads(preferences.n_threads)
 
 
 def _setters() -> Iterator[Callable[[int], None]]:

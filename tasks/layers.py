@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from numpy.typing import NDArray
 
-from ..mesh_data.attribute_values import STORAGES, AttributeType
+from .attribute_types import STORAGES, AttributeType
 
 if TYPE_CHECKING:
-    from .shape_keys import ShapeKeySettings
+    from .shape_key_settings import ShapeKeySettings
 
 GROUP, POINT, FACE, CORNER, SHAPE_KEY, MATERIAL, PARTS = (
     "GROUP", "POINT", "FACE", "CORNER", "SHAPE_KEY", "MATERIAL", "PARTS",

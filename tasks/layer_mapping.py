@@ -1,4 +1,4 @@
-"""Layers mapped from one shape to others; knows nothing of Blender, so any thread may do it."""
+"""Layers mapped from one shape to others."""
 
 from __future__ import annotations
 
@@ -9,16 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ... import compute
-from ..jobs import recent_analyses
-from ..jobs.recent_results import Recent, key_of
-from ..mesh_data.mesh_arrays import MeshArrays
-from ..mesh_data.unfinished_meshes import unfinished
-from ..mesh_state.part_table import PartTable
-from ..messages.user_errors import Refusal, in_name_of
-from ..registration.match_options import MatchOptions
-from . import layers
+from .. import compute
+from . import layers, recent_analyses
 from .layers import Layer
+from .match_options import MatchOptions
+from .mesh_shape import MeshArrays
+from .recent_results import Recent, key_of
+from .refusals import Refusal, in_name_of
+from .shared_calls import run_all
 
 # What an analysis needs for matching.
 JUST_ENOUGH = {"n_functions": 2, "order": 1}
@@ -33,7 +31,7 @@ NOT_ALIKE = (
     " image of the other, choose Mirrored."
 )
 
-_recent_maps: Recent[ShapeMap] = Recent(RECENT_VERTICES)
+_recent_maps: Recent[ShapeMap] = Recent("maps", RECENT_VERTICES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +42,12 @@ class ShapeParts:
     ----------
     of_polygon : (F,) int32
         Number of the part of each face.
-    table : PartTable
-        Their names.
+    names : dict of int to str
+        Of each that it shows.
     """
 
     of_polygon: NDArray[np.int32]
-    table: PartTable
+    names: Mapping[int, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +65,8 @@ class TransferShape:
         Vertex and face of each corner.
     options : MatchOptions
         How a target is matched with the source.
-    modifiers : tuple of str
-        Names of those that add to the mesh, so that its shape is not the one that is seen.
+    unfinished : str
+        What is told of its modifiers if it is not matched well; empty if none of them adds to it.
     parts : ShapeParts, optional
     """
 
@@ -78,7 +76,7 @@ class TransferShape:
     corner_vertex: NDArray[np.int64]
     corner_polygon: NDArray[np.int64]
     options: MatchOptions = field(default_factory=MatchOptions)
-    modifiers: tuple[str, ...] = ()
+    unfinished: str = ""
     parts: ShapeParts | None = None
 
     @property
@@ -139,7 +137,7 @@ class MappedLayers:
 
 
 def map_to_all(
-    source: TransferShape, given: list[Layer], targets: list[TransferShape], *, fills: bool, progress: compute.Progress
+    source: TransferShape, given: list[Layer], targets: list[TransferShape], progress: compute.Progress, *, fills: bool
 ) -> list[MappedLayers]:
     """Return the layers that each target gets.
 
@@ -167,19 +165,29 @@ def _new_maps(
     source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
 ) -> dict[str, ShapeMap]:
     # All are analyzed first: what cannot be is told before the longer part begins.
-    first, *others = _steps(compute.section(progress, 0, 0.3), 1 + len(targets))
-    source_analysis = _analyze(source, first, recent_analyses.recall)
-    analyses = [
-        _analyze(target, step, recent_analyses.reuse) for target, step in zip(targets.values(), others, strict=True)
+    first, others, mapping = (compute.section(progress, *ends) for ends in ((0, 0.1), (0.1, 0.3), (0.3, 0.95)))
+    of_source = _analyze(source, recent_analyses.recall, first)
+    analyses = run_all(_analyze, [(target, recent_analyses.reuse) for target in targets.values()], others)
+    pairs = [
+        (key, source, target, of_source, analysis)
+        for (key, target), analysis in zip(targets.items(), analyses, strict=True)
     ]
-    maps = {}
-    steps = _steps(compute.section(progress, 0.3, 0.95), len(targets))
-    for (key, target), analysis, step in zip(targets.items(), analyses, steps, strict=True):
-        correspondence = _correspond(source, target, source_analysis, analysis, compute.naming(step, target.name))
-        places = analysis.surface.vertex_of_input
-        maps[key] = ShapeMap(correspondence, places, source_analysis.warnings, analysis.warnings)
-        _recent_maps.put(key, maps[key], len(target.arrays.vertices))
-    return maps
+    return dict(zip(targets, run_all(_new_map, pairs, mapping), strict=True))
+
+
+def _new_map(
+    key: str,
+    source: TransferShape,
+    target: TransferShape,
+    of_source: compute.Analysis,
+    of_target: compute.Analysis,
+    progress: compute.Progress,
+) -> ShapeMap:
+    correspondence = _correspond(source, target, of_source, of_target, compute.naming(progress, target.name))
+    places = of_target.surface.vertex_of_input
+    new = ShapeMap(correspondence, places, of_source.warnings, of_target.warnings)
+    _recent_maps.put(key, new, len(target.arrays.vertices))
+    return new
 
 
 def _key_of_map(source: TransferShape, target: TransferShape) -> str:
@@ -188,11 +196,6 @@ def _key_of_map(source: TransferShape, target: TransferShape) -> str:
     return key_of(
         [*places, options.mirrored, sorted(options.flips.items()), options.alternative, *options.points.vertices]
     )
-
-
-def _steps(progress: compute.Progress, number: int) -> list[compute.Progress]:
-    """Return callbacks whose 0..1 are equal steps, one after the other."""
-    return [compute.section(progress, k / number, (k + 1) / number) for k in range(number)]
 
 
 def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
@@ -212,7 +215,7 @@ def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
 
 
 def _analyze(
-    shape: TransferShape, progress: compute.Progress, analysis_of: Callable[..., compute.Analysis]
+    shape: TransferShape, analysis_of: Callable[..., compute.Analysis], progress: compute.Progress
 ) -> compute.Analysis:
     """Return an analysis that is just enough for matching."""
     with in_name_of(shape.name):
@@ -271,7 +274,7 @@ def _mapped(
 
 def _unfinished(*shapes: TransferShape) -> tuple[str, ...]:
     """Return a sentence about each shape whose modifiers add to it."""
-    return tuple(sentence for shape in shapes if (sentence := unfinished(shape.name, shape.modifiers)))
+    return tuple(shape.unfinished for shape in shapes if shape.unfinished)
 
 
 def _unsure_parts(
@@ -286,7 +289,7 @@ def _unsure_parts(
     part, unsure = part // len(is_unsure), is_unsure[vertex[first]]
     share = np.bincount(part, unsure) / np.maximum(np.bincount(part), 1)
     unsure_parts = [int(number) for number in np.argsort(-share, kind="stable") if share[number] > FEW_UNSURE]
-    return {parts.table.name_of(number): float(share[number]) for number in unsure_parts}
+    return {parts.names[number]: float(share[number]) for number in unsure_parts}
 
 
 class _LayerMapper:

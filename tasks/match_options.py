@@ -5,9 +5,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ... import compute
-from ..mesh_state.point_pairs import NO_POINTS, GivenPoints
-from ..mesh_state.registration_record import Match
+from .. import compute
+
+
+@dataclass(frozen=True)
+class GivenPoints:
+    """Pairs of vertices of a source and a target.
+
+    Attributes
+    ----------
+    vertices : tuple of (int, int)
+    numbers : tuple of int
+        By which they are told.
+    """
+
+    vertices: tuple[tuple[int, int], ...] = ()
+    numbers: tuple[int, ...] = ()
+
+
+NO_POINTS = GivenPoints()
 
 
 @dataclass(frozen=True)
@@ -34,9 +50,3 @@ class MatchOptions:
     def point_warnings(self, matching: compute.Matching) -> tuple[str, ...]:
         """Return a sentence for each of the points that contradicts a matching."""
         return compute.point_warnings(matching.point_gaps, self.points.numbers)
-
-
-def remembered_options(match: Match) -> MatchOptions:
-    """Return the options that a mesh was registered with."""
-    flips = {int(number): sign for number, sign in match.flips.items()}
-    return MatchOptions(flips, match.alternative, match.mirrored)

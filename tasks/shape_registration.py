@@ -1,23 +1,24 @@
-"""Shapes matched with a reference and divided into its parts; knows nothing of Blender, so any thread may do it."""
+"""Shapes matched with a reference and divided into its parts."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ... import compute
-from ..jobs import recent_analyses
-from ..jobs.recent_results import Recent, key_of
-from ..mesh_state.stored_analysis import StoredAnalysis
-from ..messages.user_errors import Refusal, in_name_of
-from ..outputs.level_choice import LevelChoice
-from ..parts.analysis_settings import AnalysisInput
-from ..parts.mesh_segmentation import AnalysisResult, result_of
+from .. import compute
+from . import recent_analyses
+from .level_choice import LevelChoice
 from .match_options import MatchOptions
+from .mesh_analysis import AnalysisInput, AnalysisResult, StoredAnalysis, result_of
+from .recent_results import Recent, Value, key_of
+from .refusals import Refusal, in_name_of
+from .shared_calls import run_all
 
 CORRECTED_BEFORE = (
     "{} was corrected by hand, and then edited, cut or analyzed with other settings; "
@@ -32,8 +33,8 @@ ANALYSIS_SHARE = 0.6
 # Where in the time of registering meshes the first, the next and the last stage end.
 STAGES = (0.0, 0.4, 0.8, 1.0)
 
-_recent_shapes: Recent[MatchableShape] = Recent(RECENT_POINTS)
-_recent_matchings: Recent[compute.Matching] = Recent(RECENT_MATCHINGS)
+_recent_shapes: Recent[MatchableShape] = Recent("shapes", RECENT_POINTS)
+_recent_matchings: Recent[compute.Matching] = Recent("matchings", RECENT_MATCHINGS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +107,37 @@ class PreparedReference:
 
 
 @dataclass(frozen=True, eq=False)
+class MatchedPair:
+    """A reference and a mesh that is matched with it.
+
+    Attributes
+    ----------
+    name : str
+        Of the object.
+    reference : PreparedReference
+    target : MatchableShape
+    best : Matching
+    options : MatchOptions
+    """
+
+    name: str
+    reference: PreparedReference
+    target: MatchableShape
+    best: compute.Matching
+    options: MatchOptions
+
+    @property
+    def alternative(self) -> int:
+        """Which matching is chosen, 0 for the best."""
+        return self.options.alternative % (1 + len(self.best.alternatives))
+
+    @property
+    def matching(self) -> compute.Matching:
+        """The one that is chosen."""
+        return (self.best, *self.best.alternatives)[self.alternative]
+
+
+@dataclass(frozen=True, eq=False)
 class RegisteredShape:
     """A mesh divided into the parts of a reference.
 
@@ -163,18 +195,20 @@ def register_all(
         The least label for parts without a partner on the reference.
     """
     analyzing, matching, dividing = (compute.section(progress, *ends) for ends in pairwise(STAGES))
-    n = len(targets)
     # All are analyzed first: what cannot be is told before the longer part begins.
-    source, *others = (
-        _recall_shape(given, _step(analyzing, k, n + 1)) for k, given in enumerate((reference, *targets))
-    )
+    meshes = [(given,) for given in (reference, *targets)]
+    keys = [_key_of(given) for (given,) in meshes]
+    source, *others = _recall_all(_recent_shapes, keys, _recall_shape, meshes, analyzing)
     prepared = prepare_reference(reference.name, source, shown)
     matchings = match_all(prepared, others, options, matching)
     first_free = max(first_free, prepared.highest_label + 1)
+    pairs = [
+        (MatchedPair(given.name, prepared, target, best, chosen),)
+        for given, target, best, chosen in zip(targets, others, matchings, options, strict=True)
+    ]
     shapes: list[RegisteredShape] = []
-    for number, (given, target, chosen) in enumerate(zip(targets, others, options, strict=True)):
-        step = compute.naming(_step(dividing, number, n), given.name)
-        shapes.append(divide(prepared, given.name, target, matchings[number], chosen, first_free, step))
+    for (pair,), to_reference in zip(pairs, run_all(_map_to_reference, pairs, dividing), strict=True):
+        shapes.append(_divide(pair, to_reference, first_free))
         first_free = max(first_free, shapes[-1].highest_label + 1)
     progress(1.0, "Done")
     return Registration(prepared, tuple(shapes))
@@ -191,22 +225,21 @@ def match_all(
     What the user chose stays as it is.
     """
     matching, agreeing = compute.section(progress, 0, 0.5), compute.section(progress, 0.5, 1)
-    n = len(targets)
-    own = [
-        _recall_matching(reference, target, chosen, _step(matching, k, n))
-        for k, (target, chosen) in enumerate(zip(targets, options, strict=True))
-    ]
+    pairs = [(reference, target, chosen) for target, chosen in zip(targets, options, strict=True)]
+    keys = [_key_of_pair(reference.key, target, chosen) for _, target, chosen in pairs]
+    own = _recall_all(_recent_matchings, keys, _recall_matching, pairs, matching)
     if any(chosen.flips or chosen.alternative for chosen in options):
         return own
 
     def match_pairs(pairs: list[tuple[int, int]], progress: compute.Progress) -> list[compute.Matching]:
-        steps = (_step(progress, number, len(pairs)) for number in range(len(pairs)))
-        return [_recall_link(targets[one], targets[two], step) for (one, two), step in zip(pairs, steps, strict=True)]
+        links = [(targets[one], targets[two]) for one, two in pairs]
+        keys = [_key_of_pair(source.key, target, MatchOptions()) for source, target in links]
+        return _recall_all(_recent_matchings, keys, _recall_link, links, progress)
 
     shapes = [target.shape for target in targets]
     agreed = compute.agreed_matchings(reference.matched, shapes, own, match_pairs, agreeing)
-    for target, chosen, found in zip(targets, options, agreed, strict=True):
-        _recent_matchings.put(_key_of_pair(reference.key, target, chosen), found, 1)
+    for key, found in zip(keys, agreed, strict=True):
+        _recent_matchings.put(key, found, 1)
     return agreed
 
 
@@ -247,30 +280,44 @@ def prepare_reference(name: str, source: MatchableShape, shown: ShownParts) -> P
     )
 
 
-def divide(
-    reference: PreparedReference,
-    name: str,
-    target: MatchableShape,
-    best: compute.Matching,
-    options: MatchOptions,
-    first_free: int,
-    progress: compute.Progress,
-) -> RegisteredShape:
+def divide(pair: MatchedPair, first_free: int, progress: compute.Progress) -> RegisteredShape:
     """Return a target divided by the matching that was chosen."""
-    matchings = (best, *best.alternatives)
-    alternative = options.alternative % len(matchings)
-    matching = matchings[alternative]
-    labels = compute.label_matched(reference.matched, target.shape, matching, first_free, progress)
-    diagrams = compute.match_shape_diagrams(reference.matched.shape.shape, target.shape.shape)
+    return _divide(pair, _map_to_reference(pair, progress), first_free)
+
+
+def _map_to_reference(pair: MatchedPair, progress: compute.Progress) -> NDArray[np.int64]:
+    """Return the point of the reference that each point of the target corresponds to: most of the time of dividing."""
+    naming = compute.naming(progress, pair.name)
+    return compute.map_to_reference(pair.reference.matched, pair.target.shape, pair.matching, naming)
+
+
+def _divide(pair: MatchedPair, to_reference: NDArray[np.int64], first_free: int) -> RegisteredShape:
+    reference, target, matching = pair.reference.matched, pair.target, pair.matching
+    labels = compute.label_mapped(reference, target.shape, matching, to_reference, first_free)
+    diagrams = compute.match_shape_diagrams(reference.shape.shape, target.shape.shape)
     return RegisteredShape(
-        name=name,
+        name=pair.name,
         result=target.result,
-        labels=replace(labels, warnings=(*labels.warnings, *options.point_warnings(matching))),
+        labels=replace(labels, warnings=(*labels.warnings, *pair.options.point_warnings(matching))),
         matching=matching,
-        alternative=alternative,
-        n_alternatives=len(matchings) - 1,
+        alternative=pair.alternative,
+        n_alternatives=len(pair.best.alternatives),
         by_diagrams=tuple(np.where(diagrams.is_open, 0, diagrams.signs * (1 + diagrams.order)).tolist()),
     )
+
+
+def _recall_all(
+    recent: Recent[Value],
+    keys: list[str],
+    recall: Callable[..., Value],
+    arguments: Sequence[tuple[Any, ...]],
+    progress: compute.Progress,
+) -> list[Value]:
+    """Return what is at hand under some keys; what is not is recalled or made, in several processes if there are."""
+    known = [recent.get(key) for key in keys]
+    missing = [given for given, value in zip(arguments, known, strict=True) if value is None]
+    made = iter(run_all(recall, missing, progress))
+    return [next(made) if value is None else value for value in known]
 
 
 def _recall_shape(given: AnalysisInput, progress: compute.Progress) -> MatchableShape:
@@ -330,8 +377,3 @@ def _match(
         mirrored=options.mirrored,
         progress=progress,
     )
-
-
-def _step(progress: compute.Progress, number: int, n_steps: int) -> compute.Progress:
-    """Return a callback whose 0..1 is one of some equal steps."""
-    return compute.section(progress, number / n_steps, (number + 1) / n_steps)
