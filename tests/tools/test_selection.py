@@ -47,11 +47,11 @@ def test_of_all_draws_one_is_usual():
 
 
 def run(folder, *arguments):
-    """Run 40 tests of which every fourth is long, and return what pytest says."""
+    """Run 40 tests, every fourth of them long; the sixth takes an hour by the clock. Return what pytest says."""
     folder.joinpath("test_made.py").write_text(
         "import pytest, time\n"
         "@pytest.mark.parametrize('n', [n if n % 4 else pytest.param(n, marks=pytest.mark.long) for n in range(40)])\n"
-        "def test_it(n):\n    time.sleep(0.02)\n"
+        "def test_it(n, now=time.monotonic):\n    if n == 5: time.monotonic = lambda: now() + 3600\n"
     )
     folder.joinpath("pytest.ini").write_text("[pytest]\nmarkers = long\n")
     command = [sys.executable, "-m", "pytest", "-q", "-p", "tests.selection", "-p", "no:cacheprovider", *arguments]
@@ -71,6 +71,4 @@ def test_what_a_share_was_drawn_by_is_told(tmp_path):
 
 
 def test_after_a_time_no_other_test_is_begun(tmp_path):
-    told = run(tmp_path, "--within=0.3")
-    assert "passed" in told
-    assert "skipped" in told
+    assert "6 passed, 34 skipped" in run(tmp_path, "--within=1800")
