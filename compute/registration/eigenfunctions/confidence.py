@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...surface.mesh import Floats
 from .map_scoring import LEAST_COST, Candidate
@@ -36,14 +37,14 @@ def fit_of(candidate: Candidate) -> float:
     return 0.0 if candidate.is_torn else 1 / (1 + candidate.cost / DOUBTFUL_COST)
 
 
-def probabilities(candidates: Sequence[Candidate], evidence: Sequence[float]) -> Floats:
+def probabilities(candidates: Sequence[Candidate], evidence: ArrayLike) -> Floats:
     """Return (n,) how likely each of some different maps is the right one; what is left of 1 is for none of them.
 
     Parameters
     ----------
     candidates : sequence of Candidate
         At least one, and no two of them the same map.
-    evidence : sequence of float
+    evidence : (n,) float64
         Log odds of each.
     """
     is_whole = np.array([not candidate.is_torn for candidate in candidates])

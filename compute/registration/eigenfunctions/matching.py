@@ -302,9 +302,9 @@ def _weighed(
     """Return different ones of candidates, given best first, with their probabilities among rivals, likeliest first."""
     own = distinct_candidates(candidates, MAX_WEIGHED)
     compared = distinct_candidates([*own, *ranked(rivals)], len(own) + MAX_WEIGHED)
-    evidence = [evidence_of(candidate, scorer.fine_curvature(candidate)) for candidate in compared]
+    evidence = np.array([evidence_of(candidate, scorer.fine_curvature(candidate)) for candidate in compared])
     likely = probabilities(compared, evidence)[: len(own)]
-    order = np.argsort(-evened(likely), kind="stable")
+    order = np.lexsort((-evened(evidence[: len(own)]), -evened(likely)))
     return [(own[number], float(likely[number])) for number in order.tolist()]
 
 
