@@ -1,6 +1,9 @@
 """How long the window is silent while a mesh is analyzed, registered or transferred to, and how soon ESC gives it back.
 
-usage: python -m benchmarks.responsiveness ZIP [--vertices N ...]
+usage: python -m benchmarks.responsiveness ZIP [--vertices N ...] [--large N]
+
+Before, what a first analysis takes whose worker process is started for it, one whose worker is there, and one that a
+script waits for; and the memory of Blender and its worker around the analysis of a large mesh.
 """
 
 import argparse
@@ -28,6 +31,10 @@ JOBS = {
 WALKER = 0.8
 # At which part of the way ESC is pressed.
 FRACTIONS = (0.02, 0.2, 0.4, 0.6, 0.8)
+# Vertices of the mesh that is analyzed first, and how often each way.
+FIRST_VERTICES, N_TIMES = 1_000, 5
+# Where both processes can be told apart.
+WORKER = "sys.modules[next(name for name in sys.modules if name.endswith('jobs.worker_process'))]"
 # What is redrawn while nothing is computed, as often as progress redraws the sidebar ("UI").
 REDRAW = """
 def redraw():
@@ -46,13 +53,16 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("archive", type=Path, help="the zip for this machine")
     parser.add_argument("--vertices", type=int, nargs="+", default=[13_000, 50_000])
+    parser.add_argument("--large", type=int, default=200_000, help="vertices of the mesh that memory is read for")
     options = parser.parse_args(arguments)
     if what_is_missing():
         sys.exit(what_is_missing())
     with tempfile.TemporaryDirectory() as folder:
         window = _open(Path(folder), options.archive)
         try:
+            sys.stdout.write(_first_told(window))
             _measure(window, options.vertices)
+            sys.stdout.write(_memory_told(window, options.large))
         finally:
             window.close()
     return 0
@@ -72,6 +82,74 @@ def _open(folder: Path, archive: Path) -> Window:
         "    next(r for r in context.area.regions if r.type == 'UI').active_panel_category = 'Eigenparts'"
     )
     return window
+
+
+def _first_told(window: Window) -> str:
+    """Analyze a small mesh with a worker that has to be started, with one that is there, and in Blender itself."""
+    character = humanoid(FIRST_VERTICES)
+    _add(window, character, character)
+    window.run("import sys, time")
+    invoke, wait = JOBS["analyze"], "bpy.ops.eigenparts.analyze()"
+    # Imports and the first solve of a process are in its first analysis, whoever does it.
+    window.run(f"with over_view(): {wait}")
+    started = [_seconds_of(window, invoke, before=f"{WORKER}.stop_worker()") for _ in range(N_TIMES)]
+    told = {
+        "worker started for it": started,
+        "worker there": [_seconds_of(window, invoke) for _ in range(N_TIMES)],
+        "synchronous, in Blender": [_seconds_of(window, wait) for _ in range(N_TIMES)],
+    }
+    n_vertices = window.value("len(mesh.vertices)")
+    rows = (
+        f"| {name} | {statistics.median(seconds):.2f} | {min(seconds):.2f} to {max(seconds):.2f} |\n"
+        for name, seconds in told.items()
+    )
+    return f"| analyze {n_vertices} vertices | s | of {N_TIMES} |\n|---|---|---|\n{''.join(rows)}\n"
+
+
+def _seconds_of(window: Window, call: str, before: str = "None") -> float:
+    """Return what a call takes until it has ended, by Blender's own clock."""
+    window.run(before)
+    # The status is set at the first tick.
+    window.run(
+        "ended = []\n"
+        "def look():\n"
+        f"    if not {STATUS}.is_running and time.monotonic() - began > 0.03: ended.append(time.monotonic())\n"
+        "    return None if ended else 0.005\n"
+        "began = time.monotonic()\n"
+        f"with over_view(): {call}\n"
+        "bpy.app.timers.register(look, first_interval=0.03)"
+    )
+    window.wait_for("ended")
+    return float(window.value("ended[0] - began"))
+
+
+def _memory_told(window: Window, n_vertices: int) -> str:
+    """Analyze a large mesh, and tell the memory of both processes before, at most meanwhile, and afterwards."""
+    character = humanoid(n_vertices)
+    _add(window, character, humanoid(FIRST_VERTICES))
+    _seconds_of(window, JOBS["analyze"], before="bpy.context.view_layer.objects.active = bpy.data.objects['walker']")
+    window.run("bpy.context.view_layer.objects.active = body")
+    ids = {"Blender": window.value("__import__('os').getpid()"), "worker": window.value(f"{WORKER}._worker.process.pid")}
+    before = {name: _resident(number) for name, number in ids.items()}
+    most = dict(before)
+    _invoke(window, JOBS["analyze"])
+    window.wait_for(f"{STATUS}.is_running")
+    while window.value(f"{STATUS}.is_running"):
+        most = {name: max(most[name], _resident(number)) for name, number in ids.items()}
+        time.sleep(0.05)
+    window.settle(2.0)
+    rows = (
+        f"| {name} | {before[name]:.2f} | {most[name]:.2f} | {_resident(number):.2f} |\n"
+        for name, number in ids.items()
+    )
+    told = f"| GB, {window.value('len(mesh.vertices)')} vertices | before | at most | afterwards |\n|---|---|---|---|\n"
+    return f"\n{told}{''.join(rows)}"
+
+
+def _resident(process: int) -> float:
+    """Return the memory of a process in GB."""
+    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e9
 
 
 def _measure(window: Window, sizes: list[int]) -> None:

@@ -51,6 +51,8 @@ def _single(declared: bpy.types.Property, chance: Random, is_likely: bool) -> ob
         return _choice(declared, chance)
     if is_likely and declared.identifier in LIKELY:
         return chance.choice(LIKELY[declared.identifier])
+    if is_likely and declared.identifier == "target":
+        return chance.choice([obj.name for obj in bpy.context.view_layer.objects if obj.type == "MESH"] or [""])
     if kind == "STRING":
         return chance.choice([*TEXTS, *_names(mesh)])
     if is_likely and declared.identifier == "part":
