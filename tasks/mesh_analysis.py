@@ -27,11 +27,14 @@ class AnalysisInput:
     arrays : MeshArrays
     options : EngineOptions
         Keyword arguments of the engine's analysis.
+    n_colours : int
+        How many there are for parts.
     """
 
     name: str
     arrays: MeshArrays
     options: EngineOptions
+    n_colours: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +90,8 @@ class AnalysisResult:
     polygon_of_triangle : (T,) int64
     place_of_vertex : (V,) int64
         The vertex that stands for each where several lie at one place along a seam.
+    swatches : dict of int to int
+        The place of each part's colour among those for parts.
     hints : tuple of FunctionHint
     """
 
@@ -97,6 +102,7 @@ class AnalysisResult:
     seconds: float
     polygon_of_triangle: NDArray[np.int64]
     place_of_vertex: NDArray[np.int64]
+    swatches: dict[int, int]
     hints: tuple[compute.FunctionHint, ...] = ()
 
 
@@ -124,6 +130,7 @@ def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) 
         seconds=seconds,
         polygon_of_triangle=given.arrays.polygon_of_triangle,
         place_of_vertex=analysis.surface.vertex_of_input,
+        swatches=compute.places_at_all_levels(part_tree, given.n_colours),
         hints=compute.judge_eigenfunctions(analysis.eigenbasis) if is_function else (),
     )
 

@@ -13,6 +13,7 @@ from ...tasks.mesh_analysis import AnalysisInput
 from ...tasks.recent_analyses import EngineOptions
 from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
+from ..mesh_state.palette import PARTS
 from .choice_items import ATTRIBUTE, EIGENFUNCTION, identifier, word
 
 
@@ -49,7 +50,8 @@ SETTINGS = tuple(field.name for field in fields(AnalysisSettings))
 def read_input(context: bpy.types.Context, obj: bpy.types.Object, settings: AnalysisSettings) -> AnalysisInput:
     """Return the mesh of an object, posed if that is wanted, and the keyword arguments of the engine."""
     options = engine_options(mesh_of(obj), settings)
-    return AnalysisInput(obj.name, mesh_arrays.read_object(context, obj, settings.use_modifiers), options)
+    arrays = mesh_arrays.read_object(context, obj, settings.use_modifiers)
+    return AnalysisInput(obj.name, arrays, options, n_colours=len(PARTS))
 
 
 def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> EngineOptions:

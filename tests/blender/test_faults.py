@@ -229,7 +229,7 @@ def found_once(extension, monkeypatch):
     """A transfer finds only once what it writes again and again."""
     from eigenparts.operators.transfer import transfer
 
-    monkeypatch.setattr(transfer, "_map_layers", cache_of_one(transfer._map_layers))
+    monkeypatch.setattr(transfer, "map_to_all", cache_of_one(transfer.map_to_all))
 
 
 def cache_of_one(function):

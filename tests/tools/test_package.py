@@ -13,7 +13,7 @@ from tools.package import check_wheel, checksums
 ROOT = Path(__file__).parents[2]
 MANIFEST_TEXT = (ROOT / "blender_manifest.toml").read_text()
 MANIFEST = tomllib.loads(MANIFEST_TEXT)
-PACKAGED = ("compute", "operators", "ui", "cli", "presets", "__init__.py")
+PACKAGED = ("compute", "tasks", "operators", "ui", "cli", "presets", "__init__.py")
 SOURCES = [path for part in PACKAGED for path in [ROOT / part, *(ROOT / part).rglob("*.py")] if path.is_file()]
 # What permissions are about: modules of the network, names of files and of the clipboard.
 ONLINE = {"socket", "ssl", "ftplib", "smtplib", "requests", "urllib.request", "http.client", "http.server"}

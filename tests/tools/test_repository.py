@@ -14,7 +14,7 @@ from tools.builder import run_builder
 from tools.repository import publish
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("compute", "operators", "ui", "cli", "presets", "__init__.py", "LICENSE")
+PARTS = ("compute", "tasks", "operators", "ui", "cli", "presets", "__init__.py", "LICENSE")
 # What a user would do, in a process of its own: add the repository, install from it, update when there is a newer one.
 SESSION = """
 import sys

@@ -12,7 +12,7 @@ from .map_scoring import LEAST_COST, Candidate
 # Fitted, like the cost below, to pairs whose truth is known (docs/registration.md, "Confidence").
 COST_WEIGHT, CURVATURE_WEIGHT = 2.5, 15.0
 # Log odds that differ by less say nothing: so do those of maps that are equally right, between two triangulations.
-TIE = 0.3
+TIE = 0.2
 # Cost at which it is as likely that no map is right as that the best is.
 DOUBTFUL_COST = 1e-5
 # Curvature that agrees better than this says nothing: so it does over the right map between other triangulations.
