@@ -129,7 +129,8 @@ def _memory_told(window: Window, n_vertices: int) -> str:
     _add(window, character, humanoid(FIRST_VERTICES))
     _seconds_of(window, JOBS["analyze"], before="bpy.context.view_layer.objects.active = bpy.data.objects['walker']")
     window.run("bpy.context.view_layer.objects.active = body")
-    ids = {"Blender": window.value("__import__('os').getpid()"), "worker": window.value(f"{WORKER}._worker.process.pid")}
+    window.run("import os")
+    ids = {"Blender": window.value("os.getpid()"), "worker": window.value(f"{WORKER}._worker.process.pid")}
     before = {name: _resident(number) for name, number in ids.items()}
     most = dict(before)
     _invoke(window, JOBS["analyze"])
