@@ -234,7 +234,7 @@ def found_once(extension, monkeypatch):
 
 def cache_of_one(function):
     kept = []
-    return lambda *arguments: (kept or kept.append(function(*arguments)) or kept)[0]
+    return lambda *arguments, **options: (kept or kept.append(function(*arguments, **options)) or kept)[0]
 
 
 @pytest.mark.parametrize("writer", TRANSFER_WRITERS)
