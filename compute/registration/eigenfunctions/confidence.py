@@ -37,6 +37,12 @@ def fit_of(candidate: Candidate) -> float:
     return 0.0 if candidate.is_torn else 1 / (1 + candidate.cost / DOUBTFUL_COST)
 
 
+def odds_of(evidence: Floats) -> Floats:
+    """Return (n,) how likely maps are by their log odds, the likeliest and those that tie with it 1."""
+    lead = evidence - evidence.max()
+    return np.exp(np.where(lead > -TIE, 0.0, lead))
+
+
 def probabilities(candidates: Sequence[Candidate], evidence: ArrayLike) -> Floats:
     """Return (n,) how likely each of some different maps is the right one; what is left of 1 is for none of them.
 
@@ -50,6 +56,5 @@ def probabilities(candidates: Sequence[Candidate], evidence: ArrayLike) -> Float
     is_whole = np.array([not candidate.is_torn for candidate in candidates])
     if not is_whole.any():
         return np.zeros(len(candidates))
-    lead = np.asarray(evidence) - np.asarray(evidence)[is_whole].max()
-    odds = np.where(is_whole, np.exp(np.where(lead > -TIE, 0.0, lead)), 0.0)
+    odds = odds_of(np.where(is_whole, evidence, -np.inf))
     return fit_of(candidates[int(odds.argmax())]) * odds / odds.sum()

@@ -104,7 +104,7 @@ def distinct_candidates(best_first: Sequence[Candidate], n_wanted: int) -> list[
 
 def distance_of(one: Floats, other: Floats) -> float:
     """Return how far two maps, the constant included, are apart on the first functions; the identity's norm is 1."""
-    first = slice(1, 1 + COMPARED_FUNCTIONS)
+    first = slice(1, min(1 + COMPARED_FUNCTIONS, len(one), len(other)))
     gap = one[first, first] - other[first, first]
     return float(np.linalg.norm(gap) / np.sqrt(len(gap)))
 

@@ -16,7 +16,7 @@ import numpy as np
 from ...progress import Progress, section, silent
 from ...surface.mesh import Floats
 from ...surface.ties import first_least
-from .confidence import COST_WEIGHT, evidence_of, fit_of, probabilities
+from .confidence import COST_WEIGHT, evidence_of, fit_of, odds_of, probabilities
 from .map_scoring import LEAST_COST, SAME_MAP, Candidate, MapScorer, distance_of, distinct_candidates, ranked
 from .matching import FLIPPABLE, MAX_ALTERNATIVES, Matching
 from .spectral_shape import SpectralShape
@@ -134,6 +134,12 @@ def _map_of(candidate: Candidate) -> Floats:
     return candidate.functional_map[1:, 1:]
 
 
+def _in_turn(first: Floats, second: Floats) -> Floats:
+    """Return what two maps make one after the other, for the functions that both have."""
+    size = min(len(first), len(second))
+    return second[:size, :size] @ first[:size, :size]
+
+
 def _propose(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> None:
     """Give every spoke what follows from its neighbours in the row, forth and back, so that it gets all along."""
     forth = [(place, place + 1) for place in range(len(links))]
@@ -143,7 +149,7 @@ def _propose(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> Non
         for link in links[min(known, place)].rivals():
             step = _map_of(link) if known < place else _map_of(link).T
             for candidate in spokes[known].rivals():
-                spokes[place].candidate_of(step @ _map_of(candidate))
+                spokes[place].candidate_of(_in_turn(_map_of(candidate), step))
 
 
 def _agreed(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> list[Matching]:
@@ -157,25 +163,30 @@ def _agreed(spokes: list[_Pair], links: list[_Pair], progress: Progress) -> list
         np.array([-spoke.evidence_of(candidate) for candidate in candidates])
         for spoke, candidates in zip(spokes, rivals, strict=True)
     ]
-    chosen, margins = cheapest_in_row(of_spokes, of_links)
+    chosen, totals = cheapest_in_row(of_spokes, of_links)
     maps = [_map_of(candidates[number]) for candidates, number in zip(rivals, chosen, strict=True)]
     is_broken = [
-        link.is_sure_of_another(after @ before.T) for link, (before, after) in zip(links, pairwise(maps), strict=True)
+        link.is_sure_of_another(_in_turn(before.T, after))
+        for link, (before, after) in zip(links, pairwise(maps), strict=True)
     ]
     return [
-        _with_choice(spoke, rivals[place][chosen[place]], margins[place], is_broken[max(place - 1, 0) : place + 1])
-        for place, spoke in enumerate(spokes)
+        _with_choice(
+            spoke, rivals[place][chosen[place]], float(likely[chosen[place]]), is_broken[max(place - 1, 0) : place + 1]
+        )
+        for place, (spoke, likely) in enumerate(zip(spokes, map(_shares, totals), strict=True))
     ]
 
 
 def _costs_of_link(link: _Pair, before: list[Candidate], after: list[Candidate]) -> Floats:
     """Return (b, a) the costs of the link's maps that follow from each map to its source and each to its target."""
-    composed = [[link.candidate_of(_map_of(second) @ _map_of(first).T) for second in after] for first in before]
+    composed = [
+        [link.candidate_of(_in_turn(_map_of(first).T, _map_of(second))) for second in after] for first in before
+    ]
     return np.array([[-link.evidence_of(candidate) for candidate in row] for row in composed])
 
 
-def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[list[int], list[float]]:
-    """Return a choice for each place of a row that costs least in all, and how much more it takes to choose otherwise.
+def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[list[int], list[Floats]]:
+    """Return a choice for each place of a row that costs least in all, and what the others would cost.
 
     Parameters
     ----------
@@ -187,8 +198,8 @@ def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[li
     Returns
     -------
     chosen : list of int
-    margins : list of float
-        What the cheapest row with another choice at a place costs more; infinite where there is no other.
+    totals : list of (c,) float64
+        For each choice at each place what the cheapest row with it costs.
     """
     before, after = [of_places[0]], [of_places[-1]]
     for place, link in enumerate(of_links):
@@ -199,20 +210,26 @@ def cheapest_in_row(of_places: list[Floats], of_links: list[Floats]) -> tuple[li
     for link, rest in zip(of_links, after[1:], strict=True):
         chosen.append(int(first_least(link[chosen[-1]] + rest)))
     totals = [one + other - own for one, other, own in zip(before, after, of_places, strict=True)]
-    others = [np.delete(total, choice) for total, choice in zip(totals, chosen, strict=True)]
-    margins = [
-        float(other.min(initial=np.inf) - total[choice])
-        for other, total, choice in zip(others, totals, chosen, strict=True)
-    ]
-    return chosen, margins
+    return chosen, totals
 
 
-def _with_choice(spoke: _Pair, best: Candidate, margin: float, is_broken: list[bool]) -> Matching:
-    """Return the matching of a spoke by one of its candidates; in doubt where more of its cycles break than hold."""
+def _shares(costs: Floats) -> Floats:
+    odds = odds_of(-costs)
+    return odds / odds.sum()
+
+
+def _with_choice(spoke: _Pair, best: Candidate, likely: float, is_broken: list[bool]) -> Matching:
+    """Return the matching of a spoke by one of its candidates; in doubt where more of its cycles break than hold.
+
+    Parameters
+    ----------
+    likely : float
+        How likely it is among its rivals.
+    """
     if spoke.is_given:
         return spoke.matching
     is_consistent = 2 * sum(is_broken) <= len(is_broken)
-    confidence = fit_of(best) / (1 + float(np.exp(-margin))) / (1 if is_consistent else 2)
+    confidence = fit_of(best) * likely / (1 if is_consistent else 2)
     others = distinct_candidates([best, *ranked(spoke.candidates)], 1 + MAX_ALTERNATIVES)[1:]
     shares = (1 - confidence) * (spoke.likely(others) if others else np.empty(0))
     likeliest = sorted(zip(shares, others, strict=True), key=lambda share: -share[0])

@@ -1,6 +1,7 @@
 """Surfaces to match: lumpy balls with or without a plane of symmetry, and copies of them."""
 
 import numpy as np
+from scipy.spatial import Delaunay
 
 from compute.analysis.analysis import Analysis
 from compute.analysis.analyze import analyze
@@ -27,6 +28,15 @@ def lumpy_ball(n_subdivisions: int = 3, lumps: tuple = LUMPS) -> TriangleMesh:
         away = 1 - sphere.vertices @ (np.array(direction) / np.linalg.norm(direction))
         radius += height * np.exp(-away / width**2)
     return TriangleMesh(sphere.vertices * radius[:, None], sphere.triangles)
+
+
+def flat_strip(seed: int) -> TriangleMesh:
+    """Return a rectangle, half as long again as wide, of random triangles: it fits itself turned by half a turn."""
+    random = np.random.default_rng(seed)
+    sides = np.linspace(0, 1, 12)
+    border = [(x, y) for x in sides for y in sides if {x, y} & {0.0, 1.0}]
+    places = np.vstack([border, random.uniform(0.02, 0.98, (200, 2))]) * [1.5, 1]
+    return TriangleMesh(np.column_stack([places, np.zeros(len(places))]), Delaunay(places).simplices)
 
 
 def shuffled(mesh: TriangleMesh, seed: int = 0) -> tuple[TriangleMesh, np.ndarray]:

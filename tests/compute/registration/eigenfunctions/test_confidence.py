@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial import Delaunay
 
-from compute import TriangleMesh, analyze, match
+from compute import analyze, match
 from compute.registration.eigenfunctions.confidence import (
     COST_WEIGHT,
     DOUBTFUL_COST,
@@ -15,6 +14,7 @@ from compute.registration.eigenfunctions.confidence import (
     probabilities,
 )
 from compute.registration.eigenfunctions.map_scoring import LEAST_COST, Candidate
+from tests.compute.registration.shapes import flat_strip
 
 # Scores under which the cost is the commutation.
 GOOD = Candidate(
@@ -58,15 +58,6 @@ def test_evidence_that_differs_by_less_than_between_equally_right_maps_decides_n
     tied, told = ([costing(1e-7), costing(1e-7 * np.exp(gap / COST_WEIGHT))] for gap in (0.9 * TIE, 2 * TIE))
     assert chances(tied, [0.8, 0.8]) == pytest.approx([0.5, 0.5], rel=0.03)
     assert chances(told, [0.8, 0.8])[0] > 0.55
-
-
-def flat_strip(seed: int) -> TriangleMesh:
-    """Return a rectangle, half as long again as wide, of random triangles: it fits itself turned by half a turn."""
-    random = np.random.default_rng(seed)
-    sides = np.linspace(0, 1, 12)
-    border = [(x, y) for x in sides for y in sides if {x, y} & {0.0, 1.0}]
-    places = np.vstack([border, random.uniform(0.02, 0.98, (200, 2))]) * [1.5, 1]
-    return TriangleMesh(np.column_stack([places, np.zeros(len(places))]), Delaunay(places).simplices)
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -11,7 +11,7 @@ from compute.registration.eigenfunctions.matching import match_shapes, matching_
 from compute.registration.eigenfunctions.synchronization import cheapest_in_row, pairs_in_row, synchronized
 from compute.surface.mesh import TriangleMesh
 from examples import humanoid
-from tests.compute.registration.shapes import quick, shuffled
+from tests.compute.registration.shapes import flat_strip, quick, shuffled
 
 
 class Population:
@@ -113,8 +113,13 @@ def test_the_cheapest_row_is_that_of_trying_all(sizes):
         return places + sum(costs[pair] for costs, pair in zip(of_links, pairwise(row), strict=True))
 
     rows = sorted(product(*(range(size) for size in sizes)), key=cost)
-    chosen, margins = cheapest_in_row(of_places, of_links)
+    chosen, totals = cheapest_in_row(of_places, of_links)
     assert tuple(chosen) == rows[0]
-    for place, margin in enumerate(margins):
-        others = [cost(row) for row in rows if row[place] != chosen[place]]
-        assert margin == pytest.approx(min(others, default=np.inf) - cost(rows[0]))
+    for place, total in enumerate(totals):
+        cheapest = [min(cost(row) for row in rows if row[place] == choice) for choice in range(len(total))]
+        assert total == pytest.approx(cheapest)
+
+
+def test_maps_that_are_equally_right_are_not_sure_because_others_are_too():
+    strips = Population([matching_shape(quick(flat_strip(seed))) for seed in range(4)])
+    assert [one.confidence for one in strips.synchronized()] == pytest.approx([0.5] * 3, rel=0.01)

@@ -161,6 +161,14 @@ def test_a_matching_that_contradicts_the_others_is_told(ball, finer, monkeypatch
     assert [one.warnings for one in register([ball, finer, finer])] == [(), (), (CONTRADICTS,)]
 
 
+@pytest.mark.parametrize("place", range(3))
+def test_a_mesh_with_few_functions_costs_no_other(ball, finer, place):
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    shapes = [ball, finer]
+    shapes.insert(place, analyze(TriangleMesh(corners, [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])))
+    assert [len(one.labels) for one in register(shapes)] == [len(one.mesh.triangles) for one in shapes]
+
+
 @pytest.mark.parametrize("text", ["Matched 1 of 2", "Compared 1 of 1", "Comparing with", "Registered 1 of 2"])
 def test_every_stage_can_be_cancelled(ball, finer, text):
     def cancel(fraction, told):
