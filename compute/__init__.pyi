@@ -100,10 +100,10 @@ from .segmentation.hierarchy.levels import NOISE_THRESHOLD as NOISE_THRESHOLD
 from .segmentation.hierarchy.levels import Hierarchy as Hierarchy
 from .segmentation.hierarchy.nesting import first_own_part as first_own_part
 from .segmentation.hierarchy.nesting import number_behind as number_behind
-from .segmentation.parts.colour_places import ShownParts as ShownParts
+from .segmentation.parts.colour_places import VisibleParts as VisibleParts
 from .segmentation.parts.colour_places import colour_places as colour_places
 from .segmentation.parts.colour_places import places_at_all_levels as places_at_all_levels
-from .segmentation.parts.colour_places import shown_parts as shown_parts
+from .segmentation.parts.colour_places import visible_parts as visible_parts
 from .segmentation.parts.function_hints import FunctionHint as FunctionHint
 from .segmentation.parts.function_hints import judge_eigenfunctions as judge_eigenfunctions
 from .segmentation.parts.part_labels import BranchLabels as BranchLabels

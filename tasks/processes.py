@@ -33,6 +33,8 @@ class WorkerProcess:
         To be polled; whatever ends the process closes it.
     folder : Path
         Of large arrays and of what was computed last.
+    is_helper : bool
+        Whether it is in the group of the worker that started it.
     is_ready : bool
         Whether it has told that it takes tasks.
     is_busy : bool
@@ -44,6 +46,7 @@ class WorkerProcess:
     process: subprocess.Popen[bytes]
     channel: connection.Connection
     folder: Path
+    is_helper: bool = False
     is_ready: bool = False
     is_busy: bool = False
     started: float = field(default_factory=time.monotonic)
@@ -66,7 +69,7 @@ class WorkerProcess:
     def kill(self) -> None:
         """End the process with all that it has started, whatever they do, and wait for that: some milliseconds."""
         if self.process.returncode is None:
-            if sys.platform == "win32":
+            if sys.platform == "win32" or self.is_helper:
                 self.process.kill()
             else:
                 # One that has ended is not taken leave of yet, so that its group is still its own.
@@ -104,7 +107,7 @@ def start(command: Sequence[str], folder: Path, *, is_helper: bool = False) -> W
     # One that ends at once is noticed when it is looked at.
     with suppress(OSError):
         ours.send((PACKAGE, str(ROOT), sys.path, str(folder), is_helper))
-    return WorkerProcess(process, ours, folder)
+    return WorkerProcess(process, ours, folder, is_helper)
 
 
 def _options(handle: int, is_helper: bool) -> dict[str, Any]:

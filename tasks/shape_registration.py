@@ -198,7 +198,7 @@ def register_all(
     # All are analyzed first: what cannot be is told before the longer part begins.
     meshes = [(given,) for given in (reference, *targets)]
     keys = [_key_of(given) for (given,) in meshes]
-    source, *others = _recall_all(_recent_shapes, keys, _recall_shape, meshes, analyzing)
+    source, *others = _recall_all(_recent_shapes, keys, _new_shape, meshes, analyzing)
     prepared = prepare_reference(reference.name, source, shown)
     matchings = match_all(prepared, others, options, matching)
     first_free = max(first_free, prepared.highest_label + 1)
@@ -227,14 +227,14 @@ def match_all(
     matching, agreeing = compute.section(progress, 0, 0.5), compute.section(progress, 0.5, 1)
     pairs = [(reference, target, chosen) for target, chosen in zip(targets, options, strict=True)]
     keys = [_key_of_pair(reference.key, target, chosen) for _, target, chosen in pairs]
-    own = _recall_all(_recent_matchings, keys, _recall_matching, pairs, matching)
+    own = _recall_all(_recent_matchings, keys, _new_matching, pairs, matching)
     if any(chosen.flips or chosen.alternative for chosen in options):
         return own
 
     def match_pairs(pairs: list[tuple[int, int]], progress: compute.Progress) -> list[compute.Matching]:
         links = [(targets[one], targets[two]) for one, two in pairs]
         keys = [_key_of_pair(source.key, target, MatchOptions()) for source, target in links]
-        return _recall_all(_recent_matchings, keys, _recall_link, links, progress)
+        return _recall_all(_recent_matchings, keys, _new_link, links, progress)
 
     shapes = [target.shape for target in targets]
     agreed = compute.agreed_matchings(reference.matched, shapes, own, match_pairs, agreeing)
@@ -309,25 +309,22 @@ def _divide(pair: MatchedPair, to_reference: NDArray[np.int64], first_free: int)
 def _recall_all(
     recent: Recent[Value],
     keys: list[str],
-    recall: Callable[..., Value],
+    make: Callable[..., Value],
     arguments: Sequence[tuple[Any, ...]],
     progress: compute.Progress,
 ) -> list[Value]:
-    """Return what is at hand under some keys; what is not is recalled or made, in several processes if there are."""
-    known = [recent.get(key) for key in keys]
-    missing = [given for given, value in zip(arguments, known, strict=True) if value is None]
-    made = iter(run_all(recall, missing, progress))
-    return [next(made) if value is None else value for value in known]
+    """Return what is at hand under some keys; what is not is made and kept, in several processes if there are."""
+    known = {key: value for key in keys if (value := recent.get(key)) is not None}
+    missing = {key: given for key, given in zip(keys, arguments, strict=True) if key not in known}
+    known |= zip(missing, run_all(make, list(missing.values()), progress), strict=True)
+    return [known[key] for key in keys]
 
 
-def _recall_shape(given: AnalysisInput, progress: compute.Progress) -> MatchableShape:
-    """Return the shape of a mesh as it was prepared before, or prepare and keep it."""
-    known = _recent_shapes.get(_key_of(given))
-    if known is None:
-        with in_name_of(given.name):
-            known = matchable_shape(given, compute.naming(progress, given.name), recent_analyses.reuse)
-        _recent_shapes.put(known.key, known, len(known.shape.shape.positions))
-    return known
+def _new_shape(given: AnalysisInput, progress: compute.Progress) -> MatchableShape:
+    with in_name_of(given.name):
+        new = matchable_shape(given, compute.naming(progress, given.name), recent_analyses.reuse)
+    _recent_shapes.put(new.key, new, len(new.shape.shape.positions))
+    return new
 
 
 def _key_of(given: AnalysisInput) -> str:
@@ -341,35 +338,10 @@ def _has_trees(stored: compute.Hierarchy, hierarchy: compute.Hierarchy) -> bool:
     return trees[0] == trees[1] and stored.n_levels == hierarchy.n_levels
 
 
-def _recall_matching(
+def _new_matching(
     reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
 ) -> compute.Matching:
-    """Return the best matching as it was found before, or find and keep it."""
-    return _recall(_key_of_pair(reference.key, target, options), lambda: _match(reference, target, options, progress))
-
-
-def _recall_link(source: MatchableShape, target: MatchableShape, progress: compute.Progress) -> compute.Matching:
-    """Return the matching of two targets as it was found before, or find and keep it."""
-    key = _key_of_pair(source.key, target, MatchOptions())
-    return _recall(key, lambda: compute.match_members(source.shape, target.shape, progress))
-
-
-def _recall(key: str, find: Callable[[], compute.Matching]) -> compute.Matching:
-    known = _recent_matchings.get(key)
-    if known is None:
-        known = find()
-        _recent_matchings.put(key, known, 1)
-    return known
-
-
-def _key_of_pair(source: str, target: MatchableShape, options: MatchOptions) -> str:
-    return key_of([source, target.key, sorted(options.flips.items()), options.mirrored, *options.points.vertices])
-
-
-def _match(
-    reference: PreparedReference, target: MatchableShape, options: MatchOptions, progress: compute.Progress
-) -> compute.Matching:
-    return compute.match_divisible(
+    new = compute.match_divisible(
         reference.matched,
         target.shape,
         points=options.points.vertices,
@@ -377,3 +349,16 @@ def _match(
         mirrored=options.mirrored,
         progress=progress,
     )
+    _recent_matchings.put(_key_of_pair(reference.key, target, options), new, 1)
+    return new
+
+
+def _new_link(source: MatchableShape, target: MatchableShape, progress: compute.Progress) -> compute.Matching:
+    """Return the matching of two targets."""
+    new = compute.match_members(source.shape, target.shape, progress)
+    _recent_matchings.put(_key_of_pair(source.key, target, MatchOptions()), new, 1)
+    return new
+
+
+def _key_of_pair(source: str, target: MatchableShape, options: MatchOptions) -> str:
+    return key_of([source, target.key, sorted(options.flips.items()), options.mirrored, *options.points.vertices])

@@ -15,11 +15,9 @@ from ..compute.progress import Progress, section
 from . import processes
 from .processes import WorkerProcess
 from .tracebacks import keep_traceback
-from .worker_messages import Answer, Failure, Ready, Report, Task
+from .worker_messages import INTERVAL, Answer, Failure, Ready, Report, Task
 
 Result = TypeVar("Result")
-# Seconds between two reports of progress.
-INTERVAL = 0.1
 
 
 @dataclass(frozen=True)
@@ -78,9 +76,7 @@ def _helpers_of(sharing: Sharing, n_calls: int) -> Iterator[list[WorkerProcess]]
 
 
 def _dismiss(helper: WorkerProcess) -> None:
-    helper.process.kill()
-    helper.process.wait()
-    helper.channel.close()
+    helper.kill()
     _helpers.remove(helper)
 
 

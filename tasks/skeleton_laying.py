@@ -77,17 +77,11 @@ class SkeletonInput:
 
 def lay_bones(given: AnalysisInput, wanted: SkeletonInput, progress: compute.Progress) -> NamedSkeleton:
     """Run the engine."""
-
-    def of_analysis(fraction: float, text: str) -> None:
-        progress(0.6 * fraction, text)
-
-    def of_symmetry(fraction: float, text: str) -> None:
-        progress(0.6 + 0.3 * fraction, text)
-
-    analysis = recent_analyses.recall(given.arrays, given.options, of_analysis)
+    analysis = recent_analyses.recall(given.arrays, given.options, compute.section(progress, 0, 0.6))
     labels = wanted.labels[given.arrays.polygon_of_triangle]
     key = key_of([recent_analyses.key_of_analysis(given.arrays, given.options), labels])
-    partner = _recall_partner(key, partial(compute.mirror_parts, analysis, labels, progress=of_symmetry))
+    finding = compute.section(progress, 0.6, 0.9)
+    partner = _recall_partner(key, partial(compute.mirror_parts, analysis, labels, progress=finding))
     progress(0.9, "Laying bones")
     level = min(wanted.level, analysis.hierarchy.n_levels - 1)
     skeleton = compute.skeleton(

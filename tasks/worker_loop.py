@@ -20,10 +20,8 @@ from . import parcels, recent_results, shared_calls
 from .shared_calls import Sharing
 from .threads import use_threads
 from .tracebacks import traceback_without_folders
-from .worker_messages import Answer, Failure, Ready, Report
+from .worker_messages import INTERVAL, Answer, Failure, Ready, Report
 
-# Least seconds between two reports of progress.
-INTERVAL = 0.1
 # Folder of what was computed last, in that of the worker.
 RECENT = "recent"
 # Of Linux: the signal that a process gets when its parent ends.

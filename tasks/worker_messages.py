@@ -8,6 +8,9 @@ from typing import Any, TypeAlias
 
 from ..compute.progress import Progress
 
+# Least seconds between two reports of progress.
+INTERVAL = 0.1
+
 
 @dataclass(frozen=True, eq=False)
 class Task:

@@ -109,14 +109,14 @@ def number_parts(table: PartTable, parts: compute.Parts) -> PartTable:
     return replace(table, places=places)
 
 
-def with_swatches(table: PartTable, shown: compute.ShownParts) -> PartTable:
+def with_swatches(table: PartTable, shown: compute.VisibleParts) -> PartTable:
     """Return a table in which no two parts look alike that are shown together, as far as there are colours."""
     return replace(table, swatches=compute.colour_places([shown], len(PARTS), table.swatches))
 
 
 def with_more_swatches(table: PartTable, parts: compute.Parts) -> PartTable:
     """Return the table of another mesh's parts with swatches for those that are here alone; all others keep theirs."""
-    shown = compute.ShownParts(tuple(parts.id[parts.id > 0].tolist()))
+    shown = compute.VisibleParts(tuple(parts.id[parts.id > 0].tolist()))
     return replace(table, swatches={**with_swatches(table, shown).swatches, **table.swatches})
 
 

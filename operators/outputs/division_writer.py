@@ -42,7 +42,7 @@ def write_parts(
     mesh, of_faces = state.mesh, labels.of_faces(part_tree)
     numbered = number_parts(parts, labels.parts)
     if isinstance(labels, compute.BranchLabels):
-        numbered = with_swatches(numbered, compute.shown_parts(labels, part_tree))
+        numbered = with_swatches(numbered, compute.visible_parts(labels, part_tree))
     else:
         numbered = with_more_swatches(numbered, labels.parts)
     tables = packed_table(numbered, state.parts)

@@ -28,8 +28,8 @@ INNER = {
     *("joined_parts", "label_branches", "label_mapped", "majority_of_polygons", "map_to_reference"),
     *("match_divisible", "match_members", "match_shape_diagrams", "mixed", "naming", "needs_faces", "number_behind"),
     *("places_at_all_levels", "point_warnings", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),
-    *("shortened_borders", "shown_parts", "sides", "silent", "taken_over", "tracked_parts", "undivided"),
-    *("vertex_heights", "with_parts"),
+    *("shortened_borders", "sides", "silent", "taken_over", "tracked_parts", "undivided", "vertex_heights"),
+    *("visible_parts", "with_parts"),
 }
 
 

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.tools.test_package import PACKAGED
 from tools.builder import run_builder
 from tools.repository import publish
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("compute", "tasks", "operators", "ui", "cli", "presets", "__init__.py", "LICENSE")
 # What a user would do, in a process of its own: add the repository, install from it, update when there is a newer one.
 SESSION = """
 import sys
@@ -43,7 +43,7 @@ def package(tmp_path_factory):
 
     def built(version):
         source = tmp_path_factory.mktemp("source")
-        for part in PARTS:
+        for part in (*PACKAGED, "LICENSE"):
             copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy
             copy(ROOT / part, source / part)
         manifest = re.sub(r"^(wheels|platforms) = \[.*?\]\n", "", _manifest(), flags=re.DOTALL | re.MULTILINE)

@@ -18,7 +18,7 @@ LEVELS_AHEAD = 64
 
 
 @dataclass(frozen=True)
-class ShownParts:
+class VisibleParts:
     """Parts that are shown together.
 
     Attributes
@@ -42,7 +42,7 @@ class _Places:
     rivals: dict[int, set[int]] = field(default_factory=dict)
     given: dict[int, int] = field(default_factory=dict)
 
-    def see(self, shown: ShownParts) -> None:
+    def see(self, shown: VisibleParts) -> None:
         """Note who is shown with whom, and who must not look alike."""
         has_enough = len(shown.parts) <= self.n_colours
         for part in shown.parts:
@@ -66,7 +66,7 @@ class _Places:
 
 
 def colour_places(
-    together: Iterable[ShownParts], n_colours: int, kept: Mapping[int, int] | None = None
+    together: Iterable[VisibleParts], n_colours: int, kept: Mapping[int, int] | None = None
 ) -> dict[int, int]:
     """Return the place of each part in a list of colours.
 
@@ -75,7 +75,7 @@ def colour_places(
 
     Parameters
     ----------
-    together : iterable of ShownParts
+    together : iterable of VisibleParts
         All that is ever shown, what is seen most first.
     n_colours : int
     kept : dict, optional
@@ -88,7 +88,7 @@ def colour_places(
 
     Examples
     --------
-    >>> colour_places([ShownParts((1, 2)), ShownParts((1, 2, 3))], 19)
+    >>> colour_places([VisibleParts((1, 2)), VisibleParts((1, 2, 3))], 19)
     {1: 0, 2: 1, 3: 2}
     """
     places, kept = _Places(n_colours), kept or {}
@@ -117,12 +117,14 @@ def places_at_all_levels(part_tree: PartTree, n_colours: int) -> dict[int, int]:
     default_level, n_levels = part_tree.hierarchy.default_level, min(LEVELS_AHEAD, part_tree.hierarchy.n_levels)
     levels = [default_level, *(level for level in range(n_levels) if level != default_level)]
     together = (
-        shown_parts(label_branches(part_tree, level=level, mode=mode), part_tree) for mode in MODES for level in levels
+        visible_parts(label_branches(part_tree, level=level, mode=mode), part_tree)
+        for mode in MODES
+        for level in levels
     )
     return colour_places(together, n_colours)
 
 
-def shown_parts(labels: BranchLabels, part_tree: PartTree) -> ShownParts:
+def visible_parts(labels: BranchLabels, part_tree: PartTree) -> VisibleParts:
     """Return the parts of a level with those that touch.
 
     Parameters
@@ -133,15 +135,15 @@ def shown_parts(labels: BranchLabels, part_tree: PartTree) -> ShownParts:
 
     Returns
     -------
-    ShownParts
+    VisibleParts
 
     Examples
     --------
-    >>> shown_parts(label_branches(part_tree, level=0), part_tree).parts
+    >>> visible_parts(label_branches(part_tree, level=0), part_tree).parts
     ()
     """
     ends = labels.of_branch[part_tree.branches[0].borders]
-    return ShownParts(tuple(part for part in labels.parts.id.tolist() if part != BODY), _touching(ends))
+    return VisibleParts(tuple(part for part in labels.parts.id.tolist() if part != BODY), _touching(ends))
 
 
 def _touching(ends: Ints) -> frozenset[tuple[int, int]]:
