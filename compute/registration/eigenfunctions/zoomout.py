@@ -143,10 +143,13 @@ def cheapest_assignment(costs: Floats) -> tuple[Ints, Ints]:
     lowest, highest = (costs[finite].min(), costs[finite].max()) if finite.any() else (0.0, 0.0)
     forbidden = highest + (1 + min(costs.shape)) * ((highest - lowest) or 1.0)
     raised = np.where(finite, costs, forbidden) - lowest
-    # Whole numbers, in which SciPy computes without rounding: with rounding its search may never end. They begin at 1,
-    # as an entry of zero would be no entry.
-    whole = 1 + np.rint(raised * (WHOLE / (raised.max() or 1.0)))
-    rows, columns = min_weight_full_bipartite_matching(csr_array(whole))
+    # Whole numbers, in which SciPy computes without rounding: with rounding its search may never end.
+    whole = np.rint(raised * (WHOLE / (raised.max() or 1.0)))
+    # The least cost of each row, or of each column where there are fewer, is paid in any case. With it the search can
+    # take seconds instead of milliseconds.
+    whole -= whole.min(axis=1 if costs.shape[0] <= costs.shape[1] else 0, keepdims=True)
+    # An entry of zero would be no entry.
+    rows, columns = min_weight_full_bipartite_matching(csr_array(1 + whole))
     return rows.astype(np.int64), columns.astype(np.int64)
 
 
