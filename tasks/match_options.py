@@ -48,5 +48,5 @@ class MatchOptions:
     points: GivenPoints = NO_POINTS
 
     def point_warnings(self, matching: compute.Matching) -> tuple[str, ...]:
-        """Return a sentence for each of the points that contradicts a matching."""
-        return compute.point_warnings(matching.point_gaps, self.points.numbers)
+        """Return a sentence for each of the points that contradicts a matching, and one where they overrule another."""
+        return compute.point_warnings(matching.point_gaps, matching.sure_without_points, self.points.numbers)

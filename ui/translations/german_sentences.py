@@ -109,6 +109,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "There is no pair of points with the number {}.": "Es gibt kein Punktepaar mit der Nummer {}.",
     "Point {} was given before the vertices of {} changed; remove it and give it again.": "Punkt {} wurde gesetzt, bevor sich die Punkte von {} änderten; wegnehmen und neu setzen.",
     "Point {} contradicts everything else, which puts it {} of the size of the shape away; check it on both.": "Punkt {} widerspricht allem anderen, das ihn um {} der Größe der Gestalt woandershin setzt; bitte auf beiden prüfen.",
+    "The points overrule another matching, which is {} sure without them; look at their sides.": "Die Punkte setzen sich gegen eine andere Zuordnung durch, die ohne sie zu {} sicher ist; bitte ihre Seiten prüfen.",
     "Points are given as pairs of whole numbers: a vertex of the source and one of the target.": "Punkte werden als Paare ganzer Zahlen angegeben: ein Punkt der Quelle und einer des Ziels.",
     "Point {} names vertex {} of the {}, which has vertices 0 to {}.": "Punkt {} nennt Punkt {} von „{}“ mit den Punkten 0 bis {}.",
     "Vertex {} of the {} is in two pairs of points; leave one of them out.": "Punkt {} von „{}“ ist in zwei Punktepaaren; eines davon weglassen.",

@@ -23,8 +23,9 @@ CLOSE, FAR = 0.05, 0.15
 # How much more a map may cost than one that misses a point: what symmetries leave open differs by less, and only maps
 # that cost much more meet wrong points.
 WORTH = 30.0
-# A point that was given wrongly leaves so much of the confidence: all else may be right.
-LEAST_TRUST = 0.1
+# A point that was given wrongly leaves so much of the confidence: all else may be right. So do points against which
+# there is a map that is surer without them than this: one click on the wrong side turns a whole body round.
+LEAST_TRUST, SURE_WITHOUT = 0.1, 0.75
 # Numbers beyond which nothing changes, but sums and products stay finite: a length between points that no path joins,
 # and the cost of missing many points.
 LONGEST, MOST = 10.0, 1e100
@@ -90,11 +91,23 @@ def trust_in(gaps: Floats) -> float:
     return max(LEAST_TRUST, float(1 / (1 + (gaps.max(initial=0) / FAR) ** 4)))
 
 
-def point_warnings(gaps: Floats, numbers: Sequence[int] | None = None) -> tuple[str, ...]:
-    """Return a sentence for each point that contradicts the map, by its number; from 1 if None."""
+def point_warnings(gaps: Floats, sure_without: float, numbers: Sequence[int] | None = None) -> tuple[str, ...]:
+    """Return a sentence for each point that contradicts the map, and one where they overrule a sure one.
+
+    Parameters
+    ----------
+    gaps : (p,) float64
+        From where the map puts each point to where it was given.
+    sure_without : float
+        The probability of another map that is likeliest without the points.
+    numbers : sequence of int, optional
+        By which points are told; from 1 if None.
+    """
     told = "Point {} contradicts everything else, which puts it {:.0%} of the size of the shape away; check it on both."
+    overruled = "The points overrule another matching, which is {:.0%} sure without them; look at their sides."
     numbers = range(1, 1 + len(gaps)) if numbers is None else numbers
-    return tuple(told.format(number, gap) for number, gap in zip(numbers, gaps.tolist(), strict=True) if gap > FAR)
+    wrong = [told.format(number, gap) for number, gap in zip(numbers, gaps.tolist(), strict=True) if gap > FAR]
+    return (*wrong, *([overruled.format(sure_without)] if sure_without > SURE_WITHOUT else ()))
 
 
 def point_pairs(

@@ -15,9 +15,18 @@ from ...surface.cleaning import Surface
 from ...surface.mesh import Floats, Ints
 from ...surface.ties import evened
 from .confidence import evidence_of, probabilities
-from .given_points import PointFit, checked_points, point_pairs, point_warnings, relative_to, trust_in
+from .given_points import (
+    LEAST_TRUST,
+    SURE_WITHOUT,
+    PointFit,
+    checked_points,
+    point_pairs,
+    point_warnings,
+    relative_to,
+    trust_in,
+)
 from .hypotheses import Effort, find_hypotheses, spectrum_of
-from .map_scoring import Candidate, MapScorer, distinct_candidates, ranked
+from .map_scoring import SAME_MAP, Candidate, MapScorer, distance_of, distinct_candidates, ranked
 from .pair_memory import require_pair
 from .self_maps import find_rivals, promising
 from .spectral_shape import SpectralShape, prepare_shape, spectral_shape
@@ -61,6 +70,8 @@ class Matching:
     point_gaps : (p,) float64
         Length, in units of the root of the area, from the source's vertex of each pair to where the map of the
         functions puts the target's. Dense maps put it where it was given.
+    sure_without_points : float
+        The probability of the likeliest map without the points, if they led to another one; 0 if not.
 
     Examples
     --------
@@ -83,11 +94,12 @@ class Matching:
     is_consistent: bool = True
     points: Ints = field(default_factory=lambda: np.empty((0, 2), dtype=np.int64))
     point_gaps: Floats = field(default_factory=lambda: np.empty(0))
+    sure_without_points: float = 0.0
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences about given points that contradict the map."""
-        return point_warnings(self.point_gaps)
+        """Sentences about given points that contradict the map, or another map that is sure without them."""
+        return point_warnings(self.point_gaps, self.sure_without_points)
 
     @cached_property
     def order(self) -> Ints:
@@ -232,6 +244,7 @@ def match_shapes(
     found = [_matching_of(candidate, confidence, mirrored) for candidate, confidence in weighed]
     if fit is not None:
         found = _likeliest_first([_held_to_points(one, fit) for one in found])
+        found[0] = _told_if_overruling(found[0], candidates, rivals, scorer)
     return replace(found[0], alternatives=tuple(found[1 : 1 + MAX_ALTERNATIVES]))
 
 
@@ -331,6 +344,17 @@ def _held_to_points(matching: Matching, fit: PointFit) -> Matching:
         points=fit.pairs.vertices,
         point_gaps=gaps,
     )
+
+
+def _told_if_overruling(
+    matching: Matching, candidates: Sequence[Candidate], rivals: Sequence[Candidate], scorer: MapScorer
+) -> Matching:
+    """Return a matching that is led by points, less sure where there is another that is sure without them."""
+    free = ranked([replace(one, handicap=1.0) for one in (*candidates, *rivals)])
+    best, likely = _weighed(free, [], scorer)[0]
+    if likely <= SURE_WITHOUT or distance_of(best.functional_map, with_constant(matching.map)) <= SAME_MAP:
+        return matching
+    return replace(matching, confidence=matching.confidence * LEAST_TRUST, sure_without_points=likely)
 
 
 def _likeliest_first(matchings: Sequence[Matching]) -> list[Matching]:

@@ -49,6 +49,19 @@ def test_one_pair_of_points_tells_which_arm_is_which(starfish, turn):
     np.testing.assert_allclose(landed, source.mesh.vertices[np.roll(tips(source.mesh), -turn)], atol=0.3)
 
 
+def test_points_that_overrule_a_sure_matching_are_told():
+    """Two arms, two legs and a head, which fit turned round, too, and a nose that tells front from back."""
+    limbs = [((side * x, 0, z), height, 0.3) for side in (-1, 1) for x, z, height in ((1, 0.4, 1.2), (0.5, -1, 1.0))]
+    lumps = (*limbs, ((0, 0, 1), 0.7, 0.35), ((0, 0.6, 0.8), 0.8, 0.15))
+    source, target = quick(lumpy_ball(3, lumps)), quick(shuffled(lumpy_ball(4, lumps))[0])
+    right, wrong = ((vertex_at(source.mesh, (2, 0, 0.8)), vertex_at(target.mesh, (x, 0, 0.8))) for x in (2, -2))
+    assert match(source, target, points=[right]).warnings == ()
+    led = match(source, target, points=[wrong])
+    assert led.sure_without_points > 0.75
+    assert led.confidence < 0.2
+    assert "sure without them" in led.warnings[-1]
+
+
 def test_a_swap_of_sides_that_only_a_mirror_image_allows_is_noticed():
     source, target = (quick(lumpy_ball(n, PAIRED_LUMPS)) for n in (3, 4))
     pair = vertex_at(source.mesh, (2, 1, -1.3)), vertex_at(target.mesh, (-2, 1, -1.3))
