@@ -32,7 +32,7 @@ WALKER = 0.8
 # At which part of the way ESC is pressed.
 FRACTIONS = (0.02, 0.2, 0.4, 0.6, 0.8)
 # Vertices of the mesh that is analyzed first, and how often each way.
-FIRST_VERTICES, N_TIMES = 1_000, 5
+FIRST_VERTICES, N_TIMES = 5_000, 5
 # Where both processes can be told apart.
 WORKER = "sys.modules[next(name for name in sys.modules if name.endswith('jobs.worker_process'))]"
 # What is redrawn while nothing is computed, as often as progress redraws the sidebar ("UI").
