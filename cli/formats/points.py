@@ -26,7 +26,8 @@ def points_of(path: Path | None) -> GivenPoints:
     if path is None:
         return NO_POINTS
     if not path.is_file():
-        raise Refusal(f"the points {path}: there is no such file.")
+        told = "this is a folder; name the file in it" if path.is_dir() else "there is no such file"
+        raise Refusal(f"the points {path}: {told}.")
     try:
         pairs = json.loads(path.read_text(encoding="utf-8"))["points"]
         vertices = tuple((source, target) for source, target in pairs)

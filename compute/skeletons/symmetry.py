@@ -20,8 +20,6 @@ from .embedding import Skeleton
 SAME_PLACE = 0.01
 # Two parts are mirror images if each lands on the other with at least this share of its area.
 LEAST_SHARE = 0.6
-# A matching of this confidence is likely right.
-SURE = 0.5
 # Left and right are along x if the direction across has at least this share of it.
 LEAST_ALONG_X = 0.3
 REFLECTIONS = np.array([[-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]])
@@ -143,7 +141,7 @@ def _matched(analysis: Analysis) -> Reflection | None:
     """Return the reflection of a shape onto itself by matching with its mirror image; None if that is not sure."""
     shape = spectral_shape(analysis.matching_basis)
     matching = match(analysis, analysis, mirrored=True)
-    if matching.confidence < SURE:
+    if not matching.is_sure:
         return None
     image = point_map(shape.mirrored(), shape, matching)
     return Reflection(image, shape.triangles, shape.input_triangle)

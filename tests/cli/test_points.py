@@ -7,19 +7,27 @@ import numpy as np
 import pytest
 
 from tests.cli.files import add_object, write_blend, write_off
-from tests.compute.registration.shapes import lumpy_ball, shuffled
+from tests.compute.registration.shapes import lumpy_ball
 
-ARMS = np.array([(np.cos(angle), np.sin(angle), 0.3) for angle in 2 * np.pi * np.arange(5) / 5])
+
+def arms(turn):
+    """Return where five arms are in a star that is turned by an angle."""
+    return np.array([(np.cos(angle), np.sin(angle), 0.3) for angle in turn + 2 * np.pi * np.arange(5) / 5])
+
+
+ARMS = arms(0.0)
 
 
 @pytest.fixture(scope="module")
 def stars(tmp_path_factory):
-    """Files with two stars of five equal arms, and the tips of the arms of each."""
+    """Files with two stars of five equal arms, other triangles on each, and the tips of the arms of each."""
     folder = tmp_path_factory.mktemp("stars")
-    star = lumpy_ball(3, tuple((tuple(arm), 1.5, 0.25) for arm in ARMS))
-    meshes = {"star": star, "copy": shuffled(star)[0]}
-    tips = [[int(np.linalg.norm(mesh.vertices - 3 * arm, axis=1).argmin()) for arm in ARMS] for mesh in meshes.values()]
-    return *(write_off(mesh, folder / f"{name}.off") for name, mesh in meshes.items()), *tips
+    paths, tips = [], []
+    for name, turned in (("star", ARMS), ("copy", arms(0.5))):
+        mesh = lumpy_ball(3, tuple((tuple(arm), 1.5, 0.25) for arm in turned))
+        paths.append(write_off(mesh, folder / f"{name}.off"))
+        tips.append([int(np.linalg.norm(mesh.vertices - 3 * arm, axis=1).argmin()) for arm in turned])
+    return *paths, *tips
 
 
 def write_points(path, pairs):
@@ -83,6 +91,12 @@ def test_a_mesh_that_points_do_not_fit_costs_no_other_of_its_file(run, stars, tm
     assert code == 1
     assert "Point 1 names vertex" in rows["smaller"]["error"]
     assert rows["same"]["confidence"] > 0.5
+
+
+def test_a_folder_is_no_file_of_points(run, stars, tmp_path):
+    code, _, errors = run("register", stars[1], "--source", stars[0], "--points", tmp_path, "--output", tmp_path)
+    assert code == 1
+    assert "this is a folder; name the file in it" in errors[0]
 
 
 @pytest.mark.parametrize(

@@ -115,6 +115,8 @@ GERMAN_SENTENCES: dict[str, str] = {
     "Vertex {} of the {} is in two pairs of points; leave one of them out.": "Punkt {} von „{}“ ist in zwei Punktepaaren; eines davon weglassen.",
     "Vertex {} of the {} has no face; give another one as a point.": "Punkt {} von „{}“ hat keine Fläche; einen anderen als Punkt angeben.",
     "There are points for {} shapes, and {} to register.": "Es gibt Punkte für {} Gestalten, und {} sind zu registrieren.",
+    "Points are given as a list: for each shape to register its pairs of vertices, or None.": "Punkte werden als Liste angegeben: für jede zu registrierende Gestalt ihre Paare von Punkten, oder None.",
+    "Its matching is right with a probability of {} only; look at its parts.": "Seine Zuordnung ist nur mit einer Wahrscheinlichkeit von {} richtig; bitte seine Teile ansehen.",
     # Picking.
     "Click a part in the list first.": "Zuerst ein Teil in der Liste anklicken.",
     "Click a part; ESC or right click when done.": "Ein Teil anklicken; Esc oder Rechtsklick, wenn fertig.",

@@ -43,8 +43,9 @@ class Correspondence:
     triangle_of_triangle : (Tt,) int64
         The source's triangle at the middle of each of the target's.
     confidence : (Vt,) float64
-        From 0 to 1: high where the shapes came to lie on one another without much stretch; 0 on loose parts that were
-        not analyzed, which follow the nearest vertex in space that was.
+        From 0 to 1: how far each place can be trusted if the matching is right, for which that has a confidence of its
+        own. High where the shapes came to lie on one another without much stretch; 0 on loose parts that were not
+        analyzed, which follow the nearest vertex in space that was.
     matching : Matching
         Of the functions of the two shapes.
     found_by : str
@@ -74,7 +75,7 @@ class Correspondence:
 
     @cached_property
     def is_sure(self) -> Bools:
-        """(Vt,) whether the place of a vertex can be trusted."""
+        """(Vt,) whether the place of a vertex can be trusted, if the matching can."""
         return self.confidence >= SURE
 
     @cached_property

@@ -97,6 +97,11 @@ class Matching:
     sure_without_points: float = 0.0
 
     @property
+    def is_sure(self) -> bool:
+        """Whether it is rather right than not."""
+        return self.confidence > 0.5
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences about given points that contradict the map, or another map that is sure without them."""
         return point_warnings(self.point_gaps, self.sure_without_points)

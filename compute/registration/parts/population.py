@@ -17,7 +17,7 @@ from ...progress import Progress, rising, section, silent
 from ...segmentation.parts.part_labels import Parts, Segmentation
 from ...surface.mesh import Ints
 from ..dense.point_map import point_map
-from ..eigenfunctions.given_points import point_pairs
+from ..eigenfunctions.given_points import checked_points, point_pairs
 from ..eigenfunctions.matching import Matching, match_surfaces, matching_shape
 from ..eigenfunctions.pair_memory import require_pair
 from ..eigenfunctions.spectral_shape import prepare_shape
@@ -30,6 +30,8 @@ INTERVAL = 0.05
 MATCHED = "Matched {} of {} shapes"
 COMPARED = "Compared {} of {} pairs of shapes"
 REGISTERED = "Registered {} of {} shapes"
+UNSURE = "Its matching is right with a probability of {:.0%} only; look at its parts."
+POINTS_OF_EACH = "Points are given as a list: for each shape to register its pairs of vertices, or None."
 CONTRADICTS = "Its matching contradicts those of the other shapes; look at its parts."
 
 Result = TypeVar("Result")
@@ -147,10 +149,7 @@ def register(
     >>> [segmentation.labels.tolist() for segmentation in register(poses)]
     [[0, 0], [0, 0]]
     """
-    if not 0 <= reference < len(analyses):
-        raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
-    for analysis in analyses:
-        require_pair(analyses[reference].surface, analysis.surface)
+    points_of = _checked_shapes(analyses, reference, points)
     progress = rising(progress or silent)
     progress(0.0, "Preparing the reference")
     reference_segmentation = analyses[reference].segment(level=level, mode=FEATURES)
@@ -158,12 +157,9 @@ def register(
     if executor is not None:
         # What goes to other processes is measured once, not in each of them.
         prepare_shape(prepared.shape.shape, with_self_maps=True)
-    others = [analysis for number, analysis in enumerate(analyses) if number != reference]
-    given = [None] * len(others) if points is None else list(points)
-    if len(given) != len(others):
-        raise RegistrationError(f"There are points for {len(given)} shapes, and {len(others)} to register.")
     run = _run_serially if executor is None else partial(_run_in_executor, executor)
-    results = _register_all(prepared, others, given, run, progress)
+    others = [analyses[number] for number in points_of]
+    results = _register_all(prepared, others, list(points_of.values()), run, progress)
     segmentations = [result.segmentation for result in results]
     segmentations.insert(reference, reference_segmentation)
     return with_disjoint_labels(segmentations, reference)
@@ -310,6 +306,30 @@ def _renumbered(segmentation: Segmentation, unshared: Ints, first_free: int) -> 
     return replace(segmentation, labels=table[segmentation.labels].astype(np.int32), parts=new_parts)
 
 
+def _checked_shapes(
+    analyses: Sequence[Analysis], reference: int, points: Sequence[ArrayLike | None] | None
+) -> dict[int, Ints]:
+    """Return the pairs of points of each shape but the reference; refuse what cannot be matched with that one."""
+    if not isinstance(reference, (int, np.integer)) or not 0 <= reference < len(analyses):
+        raise RegistrationError(f"There is no shape {reference} to register to; there are {len(analyses)} shapes.")
+    others = [number for number in range(len(analyses)) if number != reference]
+    if points is None:
+        points = [None] * len(others)
+    if not isinstance(points, Sequence | np.ndarray):
+        raise RegistrationError(POINTS_OF_EACH)
+    if len(points) != len(others):
+        raise RegistrationError(f"There are points for {len(points)} shapes, and {len(others)} to register.")
+    source, checked = analyses[reference], {}
+    for number, given in ((reference, None), *zip(others, points, strict=True)):
+        try:
+            analyses[number].require_one_shape()
+            checked[number] = checked_points(given, source.surface, analyses[number].surface)
+        except RegistrationError as error:
+            raise RegistrationError(f"Shape {number}: {error}") from error
+        require_pair(source.surface, analyses[number].surface)
+    return {number: checked[number] for number in others}
+
+
 class _Runner(Protocol):
     """Calls a function with each of some groups of arguments, here or elsewhere."""
 
@@ -321,7 +341,7 @@ class _Runner(Protocol):
 def _register_all(
     reference: Reference,
     targets: Sequence[Analysis],
-    points: Sequence[ArrayLike | None],
+    points: Sequence[Ints],
     run: _Runner,
     progress: Progress,
 ) -> list[Registered]:
@@ -348,8 +368,13 @@ def _match_one(
 
 def _divide(reference: Reference, shape: Divisible, matching: Matching, progress: Progress = silent) -> Registered:
     labels = label_matched(reference, shape, matching, 1 + reference.parts.given.highest, progress)
-    warnings = (*(() if matching.is_consistent else (CONTRADICTS,)), *matching.warnings)
-    return Registered(Segmentation(labels.faces, labels.parts, labels.level, warnings), matching)
+    return Registered(Segmentation(labels.faces, labels.parts, labels.level, _doubts(matching)), matching)
+
+
+def _doubts(matching: Matching) -> tuple[str, ...]:
+    if not matching.is_consistent:
+        return (CONTRADICTS, *matching.warnings)
+    return matching.warnings if matching.is_sure else (UNSURE.format(matching.confidence), *matching.warnings)
 
 
 def _run_serially(

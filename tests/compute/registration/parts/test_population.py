@@ -18,6 +18,8 @@ from compute.registration.parts.population import CONTRADICTS, register
 from compute.surface.mesh import TriangleMesh
 from tests.compute.registration.shapes import LUMPS, lumpy_ball, moved, shuffled
 
+# Four equal ones, which nothing tells apart.
+ARMS = tuple((axis, 0.6, 0.3) for axis in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)))
 HORN = ((-1, 0, 0.3), 1.0, 0.25)
 
 
@@ -153,6 +155,11 @@ def test_a_matching_that_is_sure_and_wrong_is_put_right_by_the_others(ball, fine
     assert result.warnings == ()
 
 
+def test_a_matching_that_is_not_sure_is_told(ball):
+    star = analyze(lumpy_ball(lumps=ARMS))
+    assert register([star, analyze(shuffled(star.mesh)[0])])[1].warnings[0].startswith("Its matching is right with")
+
+
 def test_a_matching_that_contradicts_the_others_is_told(ball, finer, monkeypatch):
     def agreed(reference, targets, matchings, match_pairs, progress):
         return [matchings[0], replace(matchings[1], is_consistent=False)]
@@ -185,6 +192,31 @@ def test_parts_without_a_partner_are_numbered_from_a_free_label():
     assert [cut.tolist() for cut in renumbered] == [[0, 1, 20, 3], [21, 2, 0]]
 
 
-def test_a_reference_that_is_not_there_is_refused(ball):
-    with pytest.raises(RegistrationError, match="no shape 3"):
-        register([ball], reference=3)
+@pytest.mark.parametrize("reference", [3, -1, 1.0, "0", None])
+def test_a_reference_that_is_not_there_is_refused(ball, reference):
+    with pytest.raises(RegistrationError, match=f"no shape {reference} to register to"):
+        register([ball], reference=reference)
+
+
+@pytest.mark.parametrize(
+    ("points", "told"),
+    [(5, "as a list"), ([], "for 0 shapes, and 2"), ([None], "for 1 shapes, and 2"), ([None] * 3, "for 3 shapes, and 2")],
+)
+def test_points_that_are_not_given_for_each_of_the_others_are_refused(ball, points, told):
+    with pytest.raises(RegistrationError, match=told):
+        register([ball, ball, ball], points=points)
+
+
+def test_what_is_wrong_with_points_is_told_of_their_shape(ball):
+    with pytest.raises(RegistrationError, match="Shape 2: Point 1 names vertex 99999 of the target"):
+        register([ball, ball, ball], reference=1, points=[None, [[0, 99999]]])
+
+
+@pytest.mark.parametrize("reference", [0, 1])
+def test_a_shape_that_was_analyzed_shell_by_shell_is_told_by_its_number(ball, reference):
+    two = TriangleMesh(
+        np.vstack([ball.mesh.vertices, ball.mesh.vertices + 9]),
+        np.vstack([ball.mesh.triangles, ball.mesh.triangles + len(ball.mesh.vertices)]),
+    )
+    with pytest.raises(RegistrationError, match="Shape 1: Each loose part"):
+        register([ball, analyze(two, shells="separate")], reference=reference)
