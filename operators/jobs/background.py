@@ -54,6 +54,8 @@ class BackgroundOperator(OperatorMixin):
             self._timer = present(context.window_manager).event_timer_add(INTERVAL, window=context.window)
             present(context.window_manager).progress_begin(0, 100)
             present(context.window_manager).modal_handler_add(self)
+            # Scripts that ask at once are told that it runs.
+            _show_progress(context, type(self).bl_idname, self._job)
             return {"RUNNING_MODAL"}
         return {"CANCELLED"}
 
@@ -130,7 +132,8 @@ def _show_progress(context: bpy.types.Context, operator: str, job: Job[Any]) -> 
 
 
 def _redraw_sidebars(context: bpy.types.Context) -> None:
-    for area in present(context.screen).areas:
-        for region in area.regions:
-            if area.type == "VIEW_3D" and region.type == "UI":
-                region.tag_redraw()
+    for window in present(context.window_manager).windows:
+        for area in window.screen.areas:
+            for region in area.regions:
+                if area.type == "VIEW_3D" and region.type == "UI":
+                    region.tag_redraw()

@@ -1,5 +1,6 @@
 """Analyze in the window: the panel, progress, ESC, and what happens to the mesh meanwhile."""
 
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -167,6 +168,64 @@ def test_undo_while_it_runs_leaves_no_half_results(running):
     running.settle()
     analyzed = "['part' in mesh.attributes for mesh in bpy.data.meshes if 'eigenparts_state' in mesh]"
     assert all(running.value(analyzed))
+
+
+def test_a_script_that_waits_for_a_job_goes_on_when_it_has_ended(window, hand):
+    add_character(window, hand)
+    window.run(
+        "rows = []\n"
+        "def go_on():\n"
+        f"    if {STATUS}.is_running:\n"
+        "        return 0.05\n"
+        "    rows.append(len(bpy.context.object.data.eigenparts.rows))\n"
+        "with over_view(): bpy.ops.eigenparts.analyze('INVOKE_DEFAULT')\n"
+        "bpy.app.timers.register(go_on)"
+    )
+    window.wait_for("rows")
+    assert window.value("rows[0]") >= 6
+
+
+def test_a_job_that_another_window_looks_at_is_shown_and_cancelled_there(window, humanoid, take):
+    add_character(window, humanoid)
+    with second_window(window):
+        choose(window, "analyze")
+        window.wait_for(f"{STATUS}.fraction > 0.1")
+        take("two_windows")
+        window.run("with window_1(): bpy.ops.eigenparts.cancel()")
+        assert window.wait_for(f"not {STATUS}.is_running") < AT_ONCE
+    window.settle()
+    assert window.value("[mesh.name for mesh in bpy.data.meshes if 'eigenparts_state' in mesh]") == []
+
+
+def test_a_job_ends_with_the_window_it_was_started_in(window, humanoid):
+    add_character(window, humanoid)
+    with second_window(window):
+        window.run("with window_1(): bpy.ops.eigenparts.analyze('INVOKE_DEFAULT')")
+        window.wait_for(f"{STATUS}.fraction > 0.1")
+    window.wait_for(f"not {STATUS}.is_running")
+    window.settle()
+    assert window.value("[mesh.name for mesh in bpy.data.meshes if 'eigenparts_state' in mesh]") == []
+    analyze(window)
+
+
+@contextmanager
+def second_window(window):
+    """Open a window with a 3D view beside the first; afterwards it is closed."""
+    window.run(
+        "def window_1():\n"
+        "    other = bpy.context.window_manager.windows[1]\n"
+        "    area = next(area for area in other.screen.areas if area.type == 'VIEW_3D')\n"
+        "    region = next(region for region in area.regions if region.type == 'WINDOW')\n"
+        "    return bpy.context.temp_override(window=other, area=area, region=region)\n"
+        "with over_view(): bpy.ops.wm.window_new()"
+    )
+    window.wait_for("len(bpy.context.window_manager.windows) == 2")
+    window.settle()
+    try:
+        yield
+    finally:
+        window.run("with window_1(): bpy.ops.wm.window_close()")
+        window.wait_for("len(bpy.context.window_manager.windows) == 1")
 
 
 def test_an_error_that_nobody_foresaw_is_told_and_can_be_reported(window, hand, take):

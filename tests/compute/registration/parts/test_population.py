@@ -200,7 +200,12 @@ def test_a_reference_that_is_not_there_is_refused(ball, reference):
 
 @pytest.mark.parametrize(
     ("points", "told"),
-    [(5, "as a list"), ([], "for 0 shapes, and 2"), ([None], "for 1 shapes, and 2"), ([None] * 3, "for 3 shapes, and 2")],
+    [
+        (5, "as a list"),
+        ([], "for 0 shapes, and 2"),
+        ([None], "for 1 shapes, and 2"),
+        ([None] * 3, "for 3 shapes, and 2"),
+    ],
 )
 def test_points_that_are_not_given_for_each_of_the_others_are_refused(ball, points, told):
     with pytest.raises(RegistrationError, match=told):
