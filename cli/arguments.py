@@ -79,6 +79,12 @@ def _add_transfer(commands: Commands) -> None:
         default=[kind.lower() for kind in DEFAULT_LAYERS],
         help=f"what is transferred, with commas between: {', '.join(LAYERS)}; groups if not given",
     )
+    command.add_argument(
+        "--method",
+        choices=("auto", "place", "shape"),
+        default="auto",
+        help="by place for clothes and the like, by shape for other poses; whichever fits if not given",
+    )
     _add_execution(command)
     command.set_defaults(command="transfer")
 

@@ -39,8 +39,8 @@ class Transfer:
         if not options.source.is_file():
             raise Refusal(f"the source {options.source}: there is no such file.")
         source = {"file": options.source.name, "digest": digest_of(options.source), "object": options.reference}
-        given = {"object": options.object, "layers": options.layers, "mirrored": options.mirrored}
-        return {"command": "transfer", **given, **settings_of_points(options.points), "source": source}
+        chosen = {name: getattr(options, name) for name in ("object", "layers", "mirrored", "method")}
+        return {"command": "transfer", **chosen, **settings_of_points(options.points), "source": source}
 
     def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:
         """Leave a file open whose meshes have the layers of the source, and return it with a row for each."""
@@ -66,14 +66,17 @@ class Transfer:
     @property
     def _settings(self) -> TransferSettings:
         kinds = frozenset(kind.upper() for kind in self._options.layers)
-        return TransferSettings(LayerChoice(kinds, "ALL", (), self._options.mirrored))
+        choice = LayerChoice(kinds, "ALL", (), self._options.mirrored)
+        return TransferSettings(choice, method=self._options.method)
 
     def _transfer(self, obj: bpy.types.Object) -> ObjectRow:
         start = time.perf_counter()
         source, settings = self._source, self._settings
         points = points_of(self._options.points)
         target = mesh_transfer.read_target(bpy.context, obj, source, settings, points)
-        mapped = map_to_all(source.shape, source.layers, [target], fills=settings.fills_unsure, progress=silent)
+        mapped = map_to_all(
+            source.shape, source.layers, [target], silent, fills=settings.fills_unsure, method=settings.method
+        )
         (messages,) = mesh_transfer.write_all([obj], mapped, source, settings)
         row = _row(obj, source, mapped[0], messages)
         row["warnings"] += self._repairs

@@ -7,6 +7,7 @@ from .analysis.readings import reeb_graph as reeb_graph
 from .analysis.readings import zero_level as zero_level
 from .choices import BOUNDARIES as BOUNDARIES
 from .choices import FIELDS as FIELDS
+from .choices import METHODS as METHODS
 from .choices import MODES as MODES
 from .choices import ORDERS as ORDERS
 from .choices import SHELLS as SHELLS
@@ -31,8 +32,11 @@ from .progress import Progress as Progress
 from .progress import naming as naming
 from .progress import section as section
 from .progress import silent as silent
+from .registration.dense.correspondence import SAME_PLACE as SAME_PLACE
 from .registration.dense.correspondence import Correspondence as Correspondence
 from .registration.dense.correspondence import correspond as correspond
+from .registration.dense.correspondence import correspond_by_place as correspond_by_place
+from .registration.dense.correspondence import is_better_by_place as is_better_by_place
 from .registration.dense.transfer import fill_unsure as fill_unsure
 from .registration.dense.transfer import majority_of_polygons as majority_of_polygons
 from .registration.dense.transfer import mixed as mixed
@@ -119,6 +123,7 @@ from .skeletons.symmetry import mirror_parts as mirror_parts
 from .skeletons.symmetry import sides as sides
 from .surface.cleaning import Surface as Surface
 from .surface.cleaning import analyzed_surface as analyzed_surface
+from .surface.cleaning import welded_vertices as welded_vertices
 from .surface.heat_smoothing import softened_labels as softened_labels
 from .surface.mesh import TriangleMesh as TriangleMesh
 
@@ -143,6 +148,7 @@ __all__ = [
     "analyze",
     "binding_weights",
     "correspond",
+    "correspond_by_place",
     "diagram_distance",
     "match",
     "mirror_parts",

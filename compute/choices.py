@@ -14,3 +14,6 @@ ORDERS: tuple[str | int, ...] = ("auto", 1, 2, 3)
 BOUNDARIES = ("neumann", "dirichlet")
 # Functions that the engine itself can be asked for by name; otherwise the number of an eigenfunction, or own values.
 FIELDS = ("diffusion",)
+# How vertices of two meshes are found to correspond: by what fits if "auto", by their numbers, as nearest points of
+# meshes that lie on one another, or by shape.
+METHODS = ("auto", "number", "place", "shape")

@@ -28,8 +28,11 @@ FEW_UNSURE = 0.05
 NO_MATCH = 0.03
 NOT_ALIKE = (
     "{} and {} are not alike enough to be matched (confidence {:.0%}); nothing was transferred. If one is the mirror"
-    " image of the other, choose Mirrored."
+    " image of the other, choose Mirrored; if it lies on the other, as clothes on a body do, choose By Place."
 )
+NOT_IN_PLACE = "{} does not lie on {} anywhere; nothing was transferred. Put it there, or choose By Shape."
+MIRRORED_BY_PLACE = "Mirrored meshes do not lie on one another; choose By Shape for them."
+FAR = "{} loose parts of {} lie nowhere on {}; they are given what is nearest."
 
 _recent_maps: Recent[ShapeMap] = Recent("maps", RECENT_VERTICES)
 
@@ -63,6 +66,8 @@ class TransferShape:
         The corner of a face that each corner of a triangle is.
     corner_vertex, corner_polygon : (C,) int64
         Vertex and face of each corner.
+    to_world : (4, 4) float64
+        From the shape to where the object stands.
     options : MatchOptions
         How a target is matched with the source.
     unfinished : str
@@ -75,6 +80,7 @@ class TransferShape:
     corners: NDArray[np.int64]
     corner_vertex: NDArray[np.int64]
     corner_polygon: NDArray[np.int64]
+    to_world: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))
     options: MatchOptions = field(default_factory=MatchOptions)
     unfinished: str = ""
     parts: ShapeParts | None = None
@@ -83,6 +89,12 @@ class TransferShape:
     def mesh(self) -> compute.TriangleMesh:
         """The triangles as the engine takes them."""
         return compute.TriangleMesh(self.arrays.vertices, self.arrays.triangles)
+
+    @property
+    def mesh_in_world(self) -> compute.TriangleMesh:
+        """The triangles where the object stands."""
+        vertices = self.arrays.vertices @ self.to_world[:3, :3].T + self.to_world[:3, 3]
+        return compute.TriangleMesh(vertices, self.arrays.triangles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +114,11 @@ class ShapeMap:
     source_warnings: tuple[str, ...]
     target_warnings: tuple[str, ...]
 
+    @property
+    def is_in_place(self) -> bool:
+        """Whether the target lies on the source as a whole."""
+        return self.correspondence.overlap >= compute.SAME_PLACE
+
 
 @dataclass(frozen=True, eq=False)
 class MappedLayers:
@@ -112,9 +129,9 @@ class MappedLayers:
     layers : list of Layer
     is_sure : (V,) bool
     found_by : str
-        "number", "faces" or "shape".
+        "number", "faces", "place" or "shape".
     confidence : float
-        Of the matching.
+        Of the matching; by place the share of the vertices that lies on the source.
     unsure_parts : dict of str to float
         The share of its vertices that is unsure, for each part of the target, or of the source if the target has none,
         where it is more than `FEW_UNSURE`; the largest first.
@@ -137,39 +154,87 @@ class MappedLayers:
 
 
 def map_to_all(
-    source: TransferShape, given: list[Layer], targets: list[TransferShape], progress: compute.Progress, *, fills: bool
+    source: TransferShape,
+    given: list[Layer],
+    targets: list[TransferShape],
+    progress: compute.Progress,
+    *,
+    fills: bool,
+    method: str = "auto",
 ) -> list[MappedLayers]:
     """Return the layers that each target gets.
 
     Parameters
     ----------
+    method : str
+        "auto", "place" or "shape", as in `correspond`.
     fills : bool
         Whether unsure vertices are filled in from their neighbours.
     """
     targets = [_split_alike(source, target) for target in targets]
-    maps = _recall_maps(source, targets, progress)
+    maps = _recall_maps(source, targets, method, progress)
     return [_mapped(shape_map, source, target, given, fills) for shape_map, target in zip(maps, targets, strict=True)]
 
 
-def _recall_maps(source: TransferShape, targets: list[TransferShape], progress: compute.Progress) -> list[ShapeMap]:
+def _recall_maps(
+    source: TransferShape, targets: list[TransferShape], method: str, progress: compute.Progress
+) -> list[ShapeMap]:
     """Return the maps to all targets; those that were found for other layers before are at hand."""
-    keys = [_key_of_map(source, target) for target in targets]
+    keys = [_key_of_map(source, target, method) for target in targets]
     known = {key: found for key in keys if (found := _recent_maps.get(key)) is not None}
     missing = {key: target for key, target in zip(keys, targets, strict=True) if key not in known}
     if missing:
-        known |= _new_maps(source, missing, progress)
+        known |= _new_maps(source, missing, method, progress)
     return [known[key] for key in keys]
 
 
 def _new_maps(
-    source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
+    source: TransferShape, targets: Mapping[str, TransferShape], method: str, progress: compute.Progress
 ) -> dict[str, ShapeMap]:
+    placing, progress = compute.section(progress, 0, 0.05), compute.section(progress, 0.05, 1)
+    pairs = [(key, source, target, method) for key, target in targets.items()]
+    placed = dict(zip(targets, run_all(_map_by_place, pairs, placing), strict=True))
+    done = {key: one for key, one in placed.items() if one is not None and (method == "place" or one.is_in_place)}
+    left = {key: target for key, target in targets.items() if key not in done}
+    return done | (_maps_by_shape(source, left, placed, progress) if left else {})
+
+
+def _map_by_place(
+    key: str, source: TransferShape, target: TransferShape, method: str, progress: compute.Progress
+) -> ShapeMap | None:
+    """Return the map by place; None if another is wanted."""
+    options = target.options
+    is_led = options.mirrored or options.points.vertices or options.flips or options.alternative
+    is_copy = np.array_equal(source.arrays.triangles, target.arrays.triangles)
+    if method == "shape" or (method == "auto" and (is_led or is_copy)):
+        return None
+    if options.mirrored:
+        raise Refusal(MIRRORED_BY_PLACE)
+    progress(0.0, f"{target.name}: Looking for the nearest points")
+    with in_name_of(target.name):
+        mesh = target.mesh_in_world
+    correspondence = compute.correspond_by_place(source.mesh_in_world, mesh)
+    if method == "place" and not correspondence.is_sure.any():
+        raise Refusal(NOT_IN_PLACE.format(target.name, source.name))
+    new = ShapeMap(correspondence, compute.welded_vertices(mesh), (), ())
+    if method == "place" or new.is_in_place:
+        _recent_maps.put(key, new, len(target.arrays.vertices))
+    return new
+
+
+def _maps_by_shape(
+    source: TransferShape,
+    targets: Mapping[str, TransferShape],
+    placed: Mapping[str, ShapeMap | None],
+    progress: compute.Progress,
+) -> dict[str, ShapeMap]:
+    """Return maps by shape; by place where more of a target lies on the source than its matching is sure of."""
     # All are analyzed first: what cannot be is told before the longer part begins.
     first, others, mapping = (compute.section(progress, *ends) for ends in ((0, 0.1), (0.1, 0.3), (0.3, 0.95)))
     of_source = _analyze(source, recent_analyses.recall, first)
     analyses = run_all(_analyze, [(target, recent_analyses.reuse) for target in targets.values()], others)
     pairs = [
-        (key, source, target, of_source, analysis)
+        (key, source, target, of_source, analysis, placed[key])
         for (key, target), analysis in zip(targets.items(), analyses, strict=True)
     ]
     return dict(zip(targets, run_all(_new_map, pairs, mapping), strict=True))
@@ -181,21 +246,25 @@ def _new_map(
     target: TransferShape,
     of_source: compute.Analysis,
     of_target: compute.Analysis,
+    placed: ShapeMap | None,
     progress: compute.Progress,
 ) -> ShapeMap:
-    correspondence = _correspond(source, target, of_source, of_target, compute.naming(progress, target.name))
+    by_place = None if placed is None else placed.correspondence
+    progress = compute.naming(progress, target.name)
+    correspondence = _correspond(source, target, of_source, of_target, by_place, progress)
     places = of_target.surface.vertex_of_input
     new = ShapeMap(correspondence, places, of_source.warnings, of_target.warnings)
     _recent_maps.put(key, new, len(target.arrays.vertices))
     return new
 
 
-def _key_of_map(source: TransferShape, target: TransferShape) -> str:
+def _key_of_map(source: TransferShape, target: TransferShape, method: str) -> str:
     places = [array for shape in (source, target) for array in (shape.arrays.vertices, shape.arrays.triangles)]
+    if method != "shape":
+        places += [shape.to_world for shape in (source, target)]
     options = target.options
-    return key_of(
-        [*places, options.mirrored, sorted(options.flips.items()), options.alternative, *options.points.vertices]
-    )
+    chosen = (options.mirrored, sorted(options.flips.items()), options.alternative)
+    return key_of([method, *places, *chosen, *options.points.vertices])
 
 
 def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
@@ -227,6 +296,7 @@ def _correspond(
     target: TransferShape,
     source_analysis: compute.Analysis,
     target_analysis: compute.Analysis,
+    by_place: compute.Correspondence | None,
     progress: compute.Progress,
 ) -> compute.Correspondence:
     options = target.options
@@ -240,6 +310,8 @@ def _correspond(
     )
     choices = (matching, *matching.alternatives)
     matching = choices[options.alternative % len(choices)]
+    if by_place is not None and compute.is_better_by_place(by_place, matching):
+        return by_place
     if matching.confidence < NO_MATCH:
         not_alike = NOT_ALIKE.format(source.name, target.name, matching.confidence)
         raise Refusal(" ".join([not_alike, *options.point_warnings(matching), *_unfinished(source, target)]))
@@ -252,7 +324,7 @@ def _mapped(
     shape_map: ShapeMap, source: TransferShape, target: TransferShape, given: list[Layer], fills: bool
 ) -> MappedLayers:
     correspondence = shape_map.correspondence
-    mapper = _LayerMapper(shape_map, source, target)
+    mapper, matching = _LayerMapper(shape_map, source, target), correspondence.matching
     mapped = [mapper.map(layer) for layer in given]
     if fills and not correspondence.is_sure.all():
         mapped = [mapper.filled(layer) for layer in mapped]
@@ -260,13 +332,14 @@ def _mapped(
         layers=mapped,
         is_sure=correspondence.is_sure,
         found_by=correspondence.found_by,
-        confidence=float(correspondence.matching.confidence),
+        confidence=correspondence.overlap if matching is None else float(matching.confidence),
         unsure_parts=_unsure_parts(mapper, source, target, ~correspondence.is_sure),
         torn_seams=tuple(mapper.torn_seams),
         warnings=(
             *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
             *(f"{target.name}: {warning}" for warning in shape_map.target_warnings),
-            *(f"{target.name}: {warning}" for warning in target.options.point_warnings(correspondence.matching)),
+            *(f"{target.name}: {warning}" for warning in target.options.point_warnings(matching)),
+            *((FAR.format(n_far, target.name, source.name),) if (n_far := mapper.n_far) else ()),
         ),
         unfinished=_unfinished(source, target),
     )
@@ -303,6 +376,14 @@ class _LayerMapper:
         self._welded = compute.TriangleMesh(target.arrays.vertices, self._places[target.arrays.triangles])
         self.torn_seams: list[str] = []
 
+    @property
+    def n_far(self) -> int:
+        """How many loose parts of the target lie nowhere on the source; 0 if it was matched by shape."""
+        if self._correspondence.matching is not None:
+            return 0
+        is_sure = self._correspondence.is_sure[self._welded.triangles].any(axis=1)
+        return int((np.bincount(self._welded.component_of_triangle, is_sure) == 0).sum())
+
     def filled(self, layer: Layer) -> Layer:
         """Return a mapped layer with what fits smoothly in place of what is unsure."""
         if not layer.can_blend or layer.kind == layers.CORNER:
@@ -325,7 +406,12 @@ class _LayerMapper:
     def _displacements(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the displacements of vertices; they are turned and scaled from shape to shape."""
         moved = self._source.arrays.stretch.of(values)
+        if self._correspondence.matching is None:
+            # Both stand in the world.
+            moved = moved @ self._source.to_world[:3, :3].T
         moved = compute.transfer_displacements(self._correspondence, self._source_mesh, self._welded, moved)
+        if self._correspondence.matching is None:
+            moved = moved @ np.linalg.inv(self._target.to_world[:3, :3]).T
         return self._target.arrays.stretch.inverse.of(moved[self._places])
 
     def faces(self, values: NDArray[Any]) -> NDArray[Any]:

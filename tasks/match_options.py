@@ -47,6 +47,8 @@ class MatchOptions:
     mirrored: bool = False
     points: GivenPoints = NO_POINTS
 
-    def point_warnings(self, matching: compute.Matching) -> tuple[str, ...]:
+    def point_warnings(self, matching: compute.Matching | None) -> tuple[str, ...]:
         """Return a sentence for each of the points that contradicts a matching, and one where they overrule another."""
+        if matching is None:
+            return ()
         return compute.point_warnings(matching.point_gaps, matching.sure_without_points, self.points.numbers)

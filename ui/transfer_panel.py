@@ -25,6 +25,7 @@ class EIGENPARTS_PT_transfer(EigenpartsPanel, bpy.types.Panel):
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
+        column.prop(options, "method")
         if "GROUPS" in options.layers:
             column.prop(options, "groups")
         if "GROUPS" in options.layers and options.groups == "NAMED":

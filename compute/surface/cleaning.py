@@ -115,6 +115,11 @@ def separate_surface(mesh: TriangleMesh) -> Surface:
     return replace(surface, n_joined=n_shells, is_apart=n_shells > 1)
 
 
+def welded_vertices(mesh: TriangleMesh) -> Ints:
+    """Return (V,) the vertex that stands for each where several lie at one place, as they do along seams."""
+    return _weld(mesh).vertex_of_input
+
+
 @dataclass(frozen=True, eq=False)
 class _Welded:
     """All components of an input, welded and without collapsed or repeated triangles.

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import cg, splu
 
 from ..errors import MeshError
 from ..memory import told_if_full
-from .mesh import Bools, Floats, Ints, TriangleMesh
+from .mesh import Bools, Floats, Ints, TriangleMesh, connected_pieces
 
 # Heat that has spread for a time t from one side of a straight line falls from 90 % to 10 % over 2 ln 5 sqrt(t).
 WIDTH_OF_UNIT_TIME = 2 * np.log(5)
@@ -18,6 +18,8 @@ LONGEST_TIME = 1e4
 LEAST_WEIGHT = 1e-3
 # Triangles flatter than this fraction of the mean area count as if they had it.
 LEAST_AREA = 1e-6
+# Of the mean on the diagonal: what a system is made regular by.
+LEAST_STIFFNESS = 1e-12
 
 
 def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
@@ -106,6 +108,42 @@ def harmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floats
         rows = graph[unknown]
         system = diags_array(np.asarray(rows.sum(axis=1)).ravel()) - rows[:, unknown]
         filled[unknown] = splu(system.tocsc()).solve(np.ascontiguousarray(rows[:, is_known] @ values[is_known]))
+    return filled
+
+
+def biharmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floats:
+    """Return values with the unknown ones filled in so that they bend least and go on with the slope at their border.
+
+    Slopes reach far into what is open, such as a skirt between two legs, where those of ``harmonic_fill`` end at the
+    border. Each column stays between its least and largest known value; sums over columns may be off by what that
+    cuts away. Pieces of the mesh without any known value keep what they have.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    values : (V, n) float64
+    is_known : (V,) bool
+
+    Returns
+    -------
+    (V, n) float64
+
+    References
+    ----------
+    .. [1] Abdrashitov et al., "Robust Skin Weights Transfer via Weight Inpainting", SIGGRAPH Asia 2023.
+    """
+    laplacian = stiffness(mesh)
+    bending = (laplacian @ diags_array(1 / _vertex_areas(mesh)) @ laplacian).tocsr()
+    piece = connected_pieces(mesh.edges.vertices[:, 0], mesh.edges.vertices[:, 1], len(mesh.vertices))
+    unknown = np.flatnonzero(~is_known & np.isin(piece, piece[is_known]))
+    filled = values.copy()
+    if len(unknown):
+        known, rows = values[is_known], bending[unknown]
+        system = rows[:, unknown]
+        # Vertices that hang on flat triangles alone would be undetermined.
+        system += LEAST_STIFFNESS * diags_array(np.full(len(unknown), system.diagonal().mean()))
+        solved = splu(system.tocsc()).solve(np.ascontiguousarray(-(rows[:, is_known] @ known)))
+        filled[unknown] = np.clip(solved, known.min(axis=0), known.max(axis=0))
     return filled
 
 

@@ -22,6 +22,7 @@ from ...tasks.refusals import Refusal, in_name_of
 from ..blender.known_values import mesh_of
 from ..mesh_data import mesh_arrays
 from ..mesh_data.unfinished_meshes import modifiers_that_add, unfinished
+from ..mesh_data.world_shape import as_transform, world_matrix
 from ..mesh_state.registration_record import SURE, remembered_options
 from ..mesh_state.state import is_analyzed, read
 from ..messages.sentences import Messages
@@ -34,6 +35,7 @@ HAS_PARTS = "{} was analyzed and keeps its own parts; Register Selected gives it
 FOUND_BY = {
     "number": "Vertices correspond by their numbers.",
     "faces": "The faces are the same under other numbers.",
+    "place": "The mesh lies on the other one, so nearest points were taken.",
     "shape": "Matched by shape.",
 }
 
@@ -50,12 +52,15 @@ class TransferSettings:
         Whether unsure vertices are filled in from their neighbours.
     use_modifiers : bool
         Whether shapes are matched as modifiers leave them.
+    method : str
+        How vertices are found to correspond: "auto", "place" or "shape".
     """
 
     choice: LayerChoice
     mix: Mix = WHOLE
     fills_unsure: bool = True
     use_modifiers: bool = False
+    method: str = "auto"
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +153,7 @@ def _shape_of(obj: bpy.types.Object, arrays: MeshArrays, options: MatchOptions) 
         corners=arrays.stretch.turned(corners.reshape(-1, 3).astype(np.int64)),
         corner_vertex=mesh_arrays.vertex_of_corner(mesh).astype(np.int64),
         corner_polygon=np.repeat(np.arange(len(n_corners)), n_corners),
+        to_world=np.array(world_matrix(obj) @ as_transform(arrays.stretch.inverse), dtype=np.float64),
         options=options,
         unfinished=unfinished(obj.name, modifiers_that_add(obj)),
         parts=_parts_of(obj),

@@ -70,7 +70,8 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
             for obj in targets
         ]
         handles = TransferHandles(source, tuple(MeshHandle.of(obj) for obj in targets), settings)
-        return partial(map_to_all, source.shape, source.layers, shapes, fills=settings.fills_unsure), handles
+        work = partial(map_to_all, fills=settings.fills_unsure, method=settings.method)
+        return partial(work, source.shape, source.layers, shapes), handles
 
     def finish(self, context: bpy.types.Context, handles: TransferHandles, mapped: list[MappedLayers]) -> Outcome:
         objects = [handle.find_object() for handle in handles.targets]
@@ -85,7 +86,8 @@ class EIGENPARTS_OT_transfer(TransferOptions, BackgroundOperator, bpy.types.Oper
         """Return the properties of the operator as values."""
         names = tuple(name.strip() for name in self.group_names.split(",") if name.strip())
         choice = LayerChoice(frozenset(self.layers), self.groups, names, self.mirrored)
-        return TransferSettings(choice, Mix(self.factor, self.mask), self.unsure == "FILL", self.use_modifiers)
+        fills, method = self.unsure == "FILL", self.method.lower()
+        return TransferSettings(choice, Mix(self.factor, self.mask), fills, self.use_modifiers, method)
 
 
 def _select(mesh: bpy.types.Mesh, is_selected: NDArray[np.bool_]) -> None:

@@ -18,6 +18,15 @@ class TransferOptions(TypedProperties):
         items=[(kind, name, description) for kind, (name, description) in LAYERS.items()],
         default=set(DEFAULT_LAYERS),
     )
+    method: str = EnumProperty(
+        name="Found",
+        description="How the place on the active mesh is found that each vertex belongs to",
+        items=[
+            ("AUTO", "Automatically", "By place where the mesh lies on the active one, by shape elsewhere"),
+            ("PLACE", "By Place", "The nearest points: for clothes, hair and armor, or a mesh that replaces another"),
+            ("SHAPE", "By Shape", "What corresponds by shape: for other poses and other characters, wherever they are"),
+        ],
+    )
     groups: str = EnumProperty(
         name="Groups",
         description="Which of the vertex groups the other meshes are given",

@@ -1,7 +1,8 @@
 """The dense map: a point of the source for each vertex of the target.
 
-Three ways lead to it, tried in this order: by number, by faces, by shape. Where both shapes have the same faces, under
-whatever numbers, vertices correspond exactly.
+Four ways lead to it, tried in this order: by number, by place, by faces, by shape. Where both shapes have the same
+faces, under whatever numbers, vertices correspond exactly; where one lies on the other, as clothes do, nearest points
+are taken.
 """
 
 from dataclasses import dataclass
@@ -11,23 +12,30 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...analysis.analysis import Analysis
+from ...choices import METHODS
 from ...errors import RegistrationError
 from ...memory import told_if_full
 from ...progress import Progress, rising, section, silent
-from ...surface.mesh import Bools, Floats, Ints
+from ...surface.mesh import Bools, Floats, Ints, TriangleMesh
 from ...surface.ties import first_largest
 from ..eigenfunctions.given_points import FAR
-from ..eigenfunctions.matching import Matching, held_to_points, match_surfaces
+from ..eigenfunctions.matching import Matching, held_to_points, match_surfaces, share_topology
 from ..eigenfunctions.pair_memory import BYTES_OF_MAP, require_pair
 from ..eigenfunctions.spectral_shape import spectral_shape
 from .by_faces import map_by_faces
 from .by_number import map_by_number
+from .by_place import map_by_place
 from .by_shape import map_by_shape
 from .confidence import SURE
 from .shape_pair import Image, ShapePair, triangle_around
 from .surface_points import SurfacePoints
 
-BY_NUMBER, BY_FACES, BY_SHAPE = "number", "faces", "shape"
+BY_NUMBER, BY_FACES, BY_PLACE, BY_SHAPE = "number", "faces", "place", "shape"
+# A target of which this share lies on the source is in the same place. Poses of one character that stand on one another
+# have 0.90 at most (hands), clothes in the pose of their body 0.98 (docs/transfer.md).
+SAME_PLACE = 0.95
+# Where less does, it decides if it is at least this and more than the matching is sure of: a skirt has 0.55.
+LEAST_OVERLAP = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,11 +54,11 @@ class Correspondence:
         From 0 to 1: how far each place can be trusted if the matching is right, for which that has a confidence of its
         own. High where the shapes came to lie on one another without much stretch; 0 on loose parts that were not
         analyzed, which follow the nearest vertex in space that was.
-    matching : Matching
-        Of the functions of the two shapes.
+    matching : Matching or None
+        Of the functions of the two shapes; None if they correspond by place.
     found_by : str
         "number" where both meshes have the same triangles, so that vertices correspond by their numbers; "faces" where
-        they do under other numbers; "shape" otherwise.
+        they do under other numbers; "place" where one lies on the other; "shape" otherwise.
     source_triangles : (Ts, 3) int64
         Vertices of the source's triangles.
 
@@ -69,7 +77,7 @@ class Correspondence:
     barycentric: Floats
     triangle_of_triangle: Ints
     confidence: Floats
-    matching: Matching
+    matching: Matching | None
     found_by: str
     source_triangles: Ints
 
@@ -77,6 +85,11 @@ class Correspondence:
     def is_sure(self) -> Bools:
         """(Vt,) whether the place of a vertex can be trusted, if the matching can."""
         return self.confidence >= SURE
+
+    @property
+    def overlap(self) -> float:
+        """The share of vertices whose place can be trusted; by place the target lies on the source so far."""
+        return float(self.is_sure.mean())
 
     @cached_property
     def nearest_vertex(self) -> Ints:
@@ -107,6 +120,7 @@ def correspond(
     target: Analysis,
     *,
     matching: Matching | None = None,
+    method: str = METHODS[0],
     points: ArrayLike | None = None,
     progress: Progress | None = None,
 ) -> Correspondence:
@@ -117,6 +131,10 @@ def correspond(
     source, target : Analysis
     matching : Matching, optional
         Of the two; found now if None.
+    method : str
+        "number" if vertices correspond by their numbers, "place" if the meshes lie on one another in space, as clothes
+        on a body do or a decimated mesh on the first one, "shape" if neither. "auto" finds out; by place only where no
+        matching and no points are given.
     points : (p, 2) int, optional
         Pairs of vertices, of the source and the target, that belong together; those of the matching if None. They are
         kept exactly, and what surrounds them follows. The ``warnings`` of the matching name those that contradict it.
@@ -132,7 +150,8 @@ def correspond(
     ------
     RegistrationError
         If the matching is for other shapes, points are no pairs of vertices of the two that have faces, or a shape was
-        analyzed shell by shell.
+        analyzed shell by shell; if there is no such method, meshes with other triangles are to correspond by number, or
+        a matching or points are given to another method than by shape.
 
     References
     ----------
@@ -148,6 +167,13 @@ def correspond(
     >>> correspond(source, target).found_by
     'number'
     """
+    is_led = matching is not None or points is not None
+    _check_method(method, source, target, is_led=is_led)
+    placed = None
+    if method == "place" or (method == "auto" and not is_led and not share_topology(source.surface, target.surface)):
+        placed = correspond_by_place(source.mesh, target.mesh)
+        if method == "place" or placed.overlap >= SAME_PLACE:
+            return placed
     require_pair(source.surface, target.surface, BYTES_OF_MAP)
     progress = rising(progress or silent)
     progress(0.0, "Computing functions")
@@ -157,15 +183,74 @@ def correspond(
         matching = match_surfaces(source.surface, target.surface, *shapes, points=points)
     elif points is not None:
         matching = held_to_points(matching, points, source.surface, target.surface, *shapes)
+    if placed is not None and is_better_by_place(placed, matching):
+        return placed
     source_shape = shapes[0].mirrored() if matching.mirrored else shapes[0]
     pair = ShapePair(source=source, target=target, source_shape=source_shape, target_shape=shapes[1], matching=matching)
-    if matching.same_topology:
-        return _correspondence(pair, map_by_number(source, target), BY_NUMBER)
+    return _correspond_matched(pair, progress)
+
+
+def _correspond_matched(pair: ShapePair, progress: Progress) -> Correspondence:
+    if pair.matching.same_topology:
+        return _correspondence(pair, map_by_number(pair.source, pair.target), BY_NUMBER)
     _check_matching(pair)
     progress(0.5, "Comparing the faces")
     if (image := map_by_faces(pair)) is not None:
         return _correspondence(pair, image, BY_FACES)
     return _correspondence(pair, map_by_shape(pair, section(progress, 0.5, 1.0)), BY_SHAPE)
+
+
+def _check_method(method: str, source: Analysis, target: Analysis, *, is_led: bool) -> None:
+    if method not in METHODS:
+        raise RegistrationError(f'Vertices correspond by {", ".join(METHODS[1:])} or "auto", not by "{method}".')
+    if is_led and method in ("number", "place"):
+        raise RegistrationError(f"A matching and points lead a map by shape, not one by {method}; leave them out.")
+    if method == "number" and not share_topology(source.surface, target.surface):
+        raise RegistrationError("Meshes whose triangles differ do not correspond by the numbers of their vertices.")
+
+
+@told_if_full
+def correspond_by_place(source: TriangleMesh, target: TriangleMesh) -> Correspondence:
+    """Find the nearest point of a source for each vertex of a target that lies on it.
+
+    A vertex is sure where the source is near and looks the same way or straight against it; `fill_unsure` makes up for
+    the others. Neither mesh has to be analyzed, and a closed one or one piece is not asked for.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+        In one space, such as the world.
+
+    Returns
+    -------
+    Correspondence
+        Without a matching.
+
+    Examples
+    --------
+    A patch of cloth over a square, with one corner that hangs over:
+
+    >>> from compute import TriangleMesh, correspond_by_place
+    >>> square = TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    >>> patch = TriangleMesh([[0.2, 0.2, 0.01], [0.8, 0.2, 0.01], [1.6, 0.8, 0.01]], [[0, 1, 2]])
+    >>> correspond_by_place(square, patch).is_sure.tolist()
+    [True, True, False]
+    """
+    image = map_by_place(source, target)
+    return Correspondence(
+        triangles=image.points.triangles,
+        barycentric=image.points.barycentric,
+        triangle_of_triangle=image.triangles,
+        confidence=image.confidence,
+        matching=None,
+        found_by=BY_PLACE,
+        source_triangles=source.triangles,
+    )
+
+
+def is_better_by_place(placed: Correspondence, matching: Matching) -> bool:
+    """Whether more of a target lies on the source than a matching is sure of."""
+    return not matching.same_topology and placed.overlap > max(LEAST_OVERLAP, matching.confidence)
 
 
 def _check_matching(pair: ShapePair) -> None:

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from ...memory import told_if_full
-from ...surface.heat_smoothing import harmonic_fill
+from ...surface.heat_smoothing import biharmonic_fill, harmonic_fill
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, area_vectors, connected_pieces, unit_rows
-from .correspondence import Correspondence
+from .correspondence import BY_PLACE, Correspondence
 from .deformation_graph import nearest_rotations
 from .surface_points import SurfacePoints, SurfaceTree
 
@@ -22,14 +22,21 @@ SAME_VALUE = 1e-5
 @told_if_full
 def fill_unsure(correspondence: Correspondence, target: TriangleMesh, values: Floats) -> Floats:
     """Return values (Vt, n) with those of unsure vertices filled in smoothly from the sure ones around them."""
-    return harmonic_fill(target, values, correspondence.is_sure)
+    # What hangs over, as a skirt between the legs, goes on with the slope of what lies on the source.
+    fill = biharmonic_fill if correspondence.found_by == BY_PLACE else harmonic_fill
+    return fill(target, values, correspondence.is_sure)
 
 
 @told_if_full
 def transfer_displacements(
     correspondence: Correspondence, source: TriangleMesh, target: TriangleMesh, displacements: Floats
 ) -> Floats:
-    """Return (Vt, 3) displacements (Vs, 3) of the source's vertices, turned and scaled as the surface is there."""
+    """Return (Vt, 3) displacements (Vs, 3) of the source's vertices, turned and scaled as the surface is there.
+
+    By place they stay as they are: both meshes are in one space.
+    """
+    if correspondence.found_by == BY_PLACE:
+        return correspondence.transfer(displacements)
     turns = local_turns(correspondence, source, target)
     scale = np.sqrt(target.areas.sum() / source.areas.sum())
     return scale * np.einsum("nij,nj->ni", turns, correspondence.transfer(displacements))
@@ -40,7 +47,8 @@ def local_turns(correspondence: Correspondence, source: TriangleMesh, target: Tr
 
     Rotations; with a reflection where the mirror image of the source was matched.
     """
-    mirror = np.diag([-1.0, 1.0, 1.0]) if correspondence.matching.mirrored else np.eye(3)
+    matching = correspondence.matching
+    mirror = np.diag([-1.0, 1.0, 1.0]) if matching is not None and matching.mirrored else np.eye(3)
     places = correspondence.transfer(source.vertices) @ mirror
     spread = _edge_products(places, target) + _normal_products(places, target)
     # A vertex that many edges of no length surround has the turn of nothing, which is none.

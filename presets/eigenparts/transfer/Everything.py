@@ -2,6 +2,7 @@ import bpy
 
 settings = bpy.context.scene.eigenparts_transfer
 settings.layers = {"GROUPS", "SHAPE_KEYS", "UVS", "COLORS", "ATTRIBUTES", "FACES", "MATERIALS"}
+settings.method = "AUTO"
 settings.groups = "ALL"
 settings.group_names = ""
 settings.factor = 1.0

@@ -2,6 +2,7 @@ import bpy
 
 settings = bpy.context.scene.eigenparts_transfer
 settings.layers = {"GROUPS"}
+settings.method = "AUTO"
 settings.groups = "ALL"
 settings.group_names = ""
 settings.factor = 1.0
