@@ -32,11 +32,10 @@ from .progress import Progress as Progress
 from .progress import naming as naming
 from .progress import section as section
 from .progress import silent as silent
-from .registration.dense.correspondence import SAME_PLACE as SAME_PLACE
+from .registration.dense.by_place import lie_together as lie_together
 from .registration.dense.correspondence import Correspondence as Correspondence
 from .registration.dense.correspondence import correspond as correspond
 from .registration.dense.correspondence import correspond_by_place as correspond_by_place
-from .registration.dense.correspondence import is_better_by_place as is_better_by_place
 from .registration.dense.transfer import fill_unsure as fill_unsure
 from .registration.dense.transfer import majority_of_polygons as majority_of_polygons
 from .registration.dense.transfer import mixed as mixed

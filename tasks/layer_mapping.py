@@ -114,11 +114,6 @@ class ShapeMap:
     source_warnings: tuple[str, ...]
     target_warnings: tuple[str, ...]
 
-    @property
-    def is_in_place(self) -> bool:
-        """Whether the target lies on the source as a whole."""
-        return self.correspondence.overlap >= compute.SAME_PLACE
-
 
 @dataclass(frozen=True, eq=False)
 class MappedLayers:
@@ -131,7 +126,7 @@ class MappedLayers:
     found_by : str
         "number", "faces", "place" or "shape".
     confidence : float
-        Of the matching; by place the share of the vertices that lies on the source.
+        Of the matching; 1 by place, where nothing is matched.
     unsure_parts : dict of str to float
         The share of its vertices that is unsure, for each part of the target, or of the source if the target has none,
         where it is more than `FEW_UNSURE`; the largest first.
@@ -193,16 +188,16 @@ def _new_maps(
 ) -> dict[str, ShapeMap]:
     placing, progress = compute.section(progress, 0, 0.05), compute.section(progress, 0.05, 1)
     pairs = [(key, source, target, method) for key, target in targets.items()]
-    placed = dict(zip(targets, run_all(_map_by_place, pairs, placing), strict=True))
-    done = {key: one for key, one in placed.items() if one is not None and (method == "place" or one.is_in_place)}
-    left = {key: target for key, target in targets.items() if key not in done}
-    return done | (_maps_by_shape(source, left, placed, progress) if left else {})
+    by_place = dict(zip(targets, run_all(_map_by_place, pairs, placing), strict=True))
+    known = {key: found for key, found in by_place.items() if found is not None}
+    left = {key: target for key, target in targets.items() if key not in known}
+    return known | (_maps_by_shape(source, left, progress) if left else {})
 
 
 def _map_by_place(
     key: str, source: TransferShape, target: TransferShape, method: str, progress: compute.Progress
 ) -> ShapeMap | None:
-    """Return the map by place; None if another is wanted."""
+    """Return the map by place, None if another is wanted."""
     options = target.options
     is_led = options.mirrored or options.points.vertices or options.flips or options.alternative
     is_copy = np.array_equal(source.arrays.triangles, target.arrays.triangles)
@@ -210,31 +205,32 @@ def _map_by_place(
         return None
     if options.mirrored:
         raise Refusal(MIRRORED_BY_PLACE)
-    progress(0.0, f"{target.name}: Looking for the nearest points")
-    with in_name_of(target.name):
-        mesh = target.mesh_in_world
-    correspondence = compute.correspond_by_place(source.mesh_in_world, mesh)
-    if method == "place" and not correspondence.is_sure.any():
+    compute.naming(progress, target.name)(0.0, "Looking for the nearest points")
+    meshes = _mesh_in_world(source), _mesh_in_world(target)
+    if method == "auto" and not compute.lie_together(*meshes):
+        return None
+    correspondence = compute.correspond_by_place(*meshes)
+    if not correspondence.is_sure.any():
         raise Refusal(NOT_IN_PLACE.format(target.name, source.name))
-    new = ShapeMap(correspondence, compute.welded_vertices(mesh), (), ())
-    if method == "place" or new.is_in_place:
-        _recent_maps.put(key, new, len(target.arrays.vertices))
+    new = ShapeMap(correspondence, compute.welded_vertices(meshes[1]), (), ())
+    _recent_maps.put(key, new, len(target.arrays.vertices))
     return new
 
 
+def _mesh_in_world(shape: TransferShape) -> compute.TriangleMesh:
+    with in_name_of(shape.name):
+        return shape.mesh_in_world
+
+
 def _maps_by_shape(
-    source: TransferShape,
-    targets: Mapping[str, TransferShape],
-    placed: Mapping[str, ShapeMap | None],
-    progress: compute.Progress,
+    source: TransferShape, targets: Mapping[str, TransferShape], progress: compute.Progress
 ) -> dict[str, ShapeMap]:
-    """Return maps by shape; by place where more of a target lies on the source than its matching is sure of."""
     # All are analyzed first: what cannot be is told before the longer part begins.
     first, others, mapping = (compute.section(progress, *ends) for ends in ((0, 0.1), (0.1, 0.3), (0.3, 0.95)))
     of_source = _analyze(source, recent_analyses.recall, first)
     analyses = run_all(_analyze, [(target, recent_analyses.reuse) for target in targets.values()], others)
     pairs = [
-        (key, source, target, of_source, analysis, placed[key])
+        (key, source, target, of_source, analysis)
         for (key, target), analysis in zip(targets.items(), analyses, strict=True)
     ]
     return dict(zip(targets, run_all(_new_map, pairs, mapping), strict=True))
@@ -246,12 +242,9 @@ def _new_map(
     target: TransferShape,
     of_source: compute.Analysis,
     of_target: compute.Analysis,
-    placed: ShapeMap | None,
     progress: compute.Progress,
 ) -> ShapeMap:
-    by_place = None if placed is None else placed.correspondence
-    progress = compute.naming(progress, target.name)
-    correspondence = _correspond(source, target, of_source, of_target, by_place, progress)
+    correspondence = _correspond(source, target, of_source, of_target, compute.naming(progress, target.name))
     places = of_target.surface.vertex_of_input
     new = ShapeMap(correspondence, places, of_source.warnings, of_target.warnings)
     _recent_maps.put(key, new, len(target.arrays.vertices))
@@ -296,7 +289,6 @@ def _correspond(
     target: TransferShape,
     source_analysis: compute.Analysis,
     target_analysis: compute.Analysis,
-    by_place: compute.Correspondence | None,
     progress: compute.Progress,
 ) -> compute.Correspondence:
     options = target.options
@@ -310,8 +302,6 @@ def _correspond(
     )
     choices = (matching, *matching.alternatives)
     matching = choices[options.alternative % len(choices)]
-    if by_place is not None and compute.is_better_by_place(by_place, matching):
-        return by_place
     if matching.confidence < NO_MATCH:
         not_alike = NOT_ALIKE.format(source.name, target.name, matching.confidence)
         raise Refusal(" ".join([not_alike, *options.point_warnings(matching), *_unfinished(source, target)]))
@@ -332,7 +322,7 @@ def _mapped(
         layers=mapped,
         is_sure=correspondence.is_sure,
         found_by=correspondence.found_by,
-        confidence=correspondence.overlap if matching is None else float(matching.confidence),
+        confidence=1.0 if matching is None else float(matching.confidence),
         unsure_parts=_unsure_parts(mapper, source, target, ~correspondence.is_sure),
         torn_seams=tuple(mapper.torn_seams),
         warnings=(

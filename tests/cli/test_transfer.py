@@ -6,6 +6,7 @@ import pytest
 
 from compute.surface.mesh import TriangleMesh
 from tests.cli.files import add_object, turned, write_blend, write_off
+from tests.compute.registration.dense.test_by_place import BODY, tube
 from tests.compute.registration.shapes import lumpy_ball
 from tests.shapes import icosphere, joined
 
@@ -84,3 +85,16 @@ def test_the_part_whose_vertices_are_unsure_is_named(run, weighted, tmp_path):
     assert (code, row["unsure_vertices"]) == (0, len(beads.vertices))
     assert 0.3 < share < 0.7
     assert f"copy: {part}: {share:.0%} unsure." in row["warnings"]
+
+
+def test_clothes_get_the_weights_of_the_body_in_another_file(run, tmp_path):
+    obj = add_object(BODY)
+    group = obj.vertex_groups.new(name="Height")
+    for vertex, height in enumerate((BODY.vertices[:, 2] / 10).tolist()):
+        group.add([vertex], height, "REPLACE")
+    body = write_blend(tmp_path / "body.blend")
+    shirt = write_off(tube(1.03, 4.0, 8.0), tmp_path / "shirt.off")
+    code, report, _ = run("transfer", shirt, "--source", body, "--method", "place", "--json")
+    (row,) = report["files"][0]["objects"]
+    assert (code, row["found_by"], row["confidence"], row["unsure_vertices"]) == (0, "place", 1.0, 0)
+    assert report["files"][0]["settings"]["method"] == "place"

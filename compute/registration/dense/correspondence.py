@@ -24,18 +24,13 @@ from ..eigenfunctions.pair_memory import BYTES_OF_MAP, require_pair
 from ..eigenfunctions.spectral_shape import spectral_shape
 from .by_faces import map_by_faces
 from .by_number import map_by_number
-from .by_place import map_by_place
+from .by_place import lie_together, map_by_place
 from .by_shape import map_by_shape
 from .confidence import SURE
 from .shape_pair import Image, ShapePair, triangle_around
 from .surface_points import SurfacePoints
 
 BY_NUMBER, BY_FACES, BY_PLACE, BY_SHAPE = "number", "faces", "place", "shape"
-# A target of which this share lies on the source is in the same place. Poses of one character that stand on one another
-# have 0.90 at most (hands), clothes in the pose of their body 0.98 (docs/transfer.md).
-SAME_PLACE = 0.95
-# Where less does, it decides if it is at least this and more than the matching is sure of: a skirt has 0.55.
-LEAST_OVERLAP = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,11 +164,9 @@ def correspond(
     """
     is_led = matching is not None or points is not None
     _check_method(method, source, target, is_led=is_led)
-    placed = None
-    if method == "place" or (method == "auto" and not is_led and not share_topology(source.surface, target.surface)):
-        placed = correspond_by_place(source.mesh, target.mesh)
-        if method == "place" or placed.overlap >= SAME_PLACE:
-            return placed
+    is_free = method == "auto" and not is_led and not share_topology(source.surface, target.surface)
+    if method == "place" or (is_free and lie_together(source.mesh, target.mesh)):
+        return correspond_by_place(source.mesh, target.mesh)
     require_pair(source.surface, target.surface, BYTES_OF_MAP)
     progress = rising(progress or silent)
     progress(0.0, "Computing functions")
@@ -183,8 +176,6 @@ def correspond(
         matching = match_surfaces(source.surface, target.surface, *shapes, points=points)
     elif points is not None:
         matching = held_to_points(matching, points, source.surface, target.surface, *shapes)
-    if placed is not None and is_better_by_place(placed, matching):
-        return placed
     source_shape = shapes[0].mirrored() if matching.mirrored else shapes[0]
     pair = ShapePair(source=source, target=target, source_shape=source_shape, target_shape=shapes[1], matching=matching)
     return _correspond_matched(pair, progress)
@@ -246,11 +237,6 @@ def correspond_by_place(source: TriangleMesh, target: TriangleMesh) -> Correspon
         found_by=BY_PLACE,
         source_triangles=source.triangles,
     )
-
-
-def is_better_by_place(placed: Correspondence, matching: Matching) -> bool:
-    """Whether more of a target lies on the source than a matching is sure of."""
-    return not matching.same_topology and placed.overlap > max(LEAST_OVERLAP, matching.confidence)
 
 
 def _check_matching(pair: ShapePair) -> None:

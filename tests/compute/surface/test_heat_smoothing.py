@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from compute import MeshError
-from compute.surface.heat_smoothing import harmonic_fill, smoothed, softened_labels, stiffness
+from compute.surface.heat_smoothing import biharmonic_fill, harmonic_fill, smoothed, softened_labels, stiffness
 from tests.shapes import icosphere, joined, rectangle
 
 
@@ -94,3 +94,28 @@ def test_a_piece_without_anything_known_keeps_what_it_has():
     filled = harmonic_fill(both, values, np.arange(24) == 3)
     np.testing.assert_array_equal(filled[12:], values[12:])
     np.testing.assert_allclose(filled[:12], 3)
+
+
+def test_a_slope_goes_on_into_what_is_filled():
+    mesh = rectangle(40, 10)
+    x, y, _ = mesh.vertices.T
+    values = np.stack([3 * x - 2 * y, np.ones_like(x)], axis=1)
+    is_known = (x < 0.5) | (x > 1.5)
+    filled = biharmonic_fill(mesh, np.where(is_known[:, None], values, 99.0), is_known)
+    # At the open edges nothing holds the slope across.
+    np.testing.assert_allclose(filled[:, 1], 1, atol=1e-6)
+    middle = (y > 0.4) & (y < 0.6)
+    np.testing.assert_allclose(filled[middle, 0], values[middle, 0], atol=0.2)
+
+
+def test_what_is_filled_stays_between_what_is_known_and_loose_pieces_stay():
+    ball = icosphere(2)
+    mesh = joined(ball, ball)
+    known = np.arange(len(mesh.vertices)) < len(ball.vertices)
+    known &= mesh.vertices[:, 2] > 0.2
+    values = np.where(known, mesh.vertices[:, 2] ** 2, -7.0)[:, None]
+    filled = biharmonic_fill(mesh, values, known)
+    first, second = np.split(filled[:, 0], 2)
+    assert first.min() > 0.04
+    assert first.max() <= 1
+    assert (second == -7).all()
