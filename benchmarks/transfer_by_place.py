@@ -2,8 +2,8 @@
 
 usage: python -m benchmarks.transfer_by_place --data DIR
 
-Errors are half the sum of absolute differences of the weights at a vertex, mean over vertices. Beside ours, which is the
-way of robust weight transfer, stand the nearest point, which Blender's Data Transfer takes, and harmonic filling.
+Errors are half the sum of absolute differences of the weights at a vertex, mean over vertices. Beside ours, the way of
+robust weight transfer, stand the nearest point, which Blender's Data Transfer takes, and harmonic filling.
 """
 
 import argparse

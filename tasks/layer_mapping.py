@@ -205,7 +205,8 @@ def _map_by_place(
         return None
     if options.mirrored:
         raise Refusal(MIRRORED_BY_PLACE)
-    compute.naming(progress, target.name)(0.0, "Looking for the nearest points")
+    progress = compute.naming(progress, target.name)
+    progress(0.0, "Looking for the nearest points")
     meshes = _mesh_in_world(source), _mesh_in_world(target)
     if method == "auto" and not compute.lie_together(*meshes):
         return None

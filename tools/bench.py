@@ -42,6 +42,7 @@ BENCHMARKS = {
     "registered_parts": Benchmark(),
     "transfer": Benchmark(),
     "between_characters": Benchmark(),
+    "transfer_by_place": Benchmark(),
     "skeleton": Benchmark(quick=""),
     "slider": Benchmark("", "--vertices 10000"),
     "size": Benchmark("", "--vertices 13000"),
