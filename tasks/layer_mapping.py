@@ -24,6 +24,8 @@ JUST_ENOUGH = {"n_functions": 2, "order": 1}
 RECENT_VERTICES = 200_000
 # Parts of which no larger share than this is unsure are not named.
 FEW_UNSURE = 0.05
+# It is told if more than this share of a target does not lie on the source that it was taken from by place.
+MUCH_UNSURE = 0.2
 # A matching this unsure is none.
 NO_MATCH = 0.03
 NOT_ALIKE = (
@@ -31,8 +33,9 @@ NOT_ALIKE = (
     " image of the other, choose Mirrored; if it lies on the other, as clothes on a body do, choose By Place."
 )
 NOT_IN_PLACE = "{} does not lie on {} anywhere; nothing was transferred. Put it there, or choose By Shape."
-MIRRORED_BY_PLACE = "Mirrored meshes do not lie on one another; choose By Shape for them."
-FAR = "{} loose parts of {} lie nowhere on {}; they are given what is nearest."
+LED_BY_PLACE = "Points and Mirrored are for transfers by shape; choose By Shape, or take them back."
+FAR = "Loose parts of {} that lie nowhere on {}: {}; they are given what is nearest."
+NOT_ALL_THERE = "{:.0%} of {} does not lie on {}; if it stands in another pose, bring both into the same."
 
 _recent_maps: Recent[ShapeMap] = Recent("maps", RECENT_VERTICES)
 
@@ -126,7 +129,7 @@ class MappedLayers:
     found_by : str
         "number", "faces", "place" or "shape".
     confidence : float
-        Of the matching; 1 by place, where nothing is matched.
+        Of the matching; by place the share of the vertices that lies on the source.
     unsure_parts : dict of str to float
         The share of its vertices that is unsure, for each part of the target, or of the source if the target has none,
         where it is more than `FEW_UNSURE`; the largest first.
@@ -175,27 +178,22 @@ def _recall_maps(
     source: TransferShape, targets: list[TransferShape], method: str, progress: compute.Progress
 ) -> list[ShapeMap]:
     """Return the maps to all targets; those that were found for other layers before are at hand."""
-    keys = [_key_of_map(source, target, method) for target in targets]
+    placing, shaping = compute.section(progress, 0, 0.05), compute.section(progress, 0.05, 1)
+    by_place = run_all(_map_by_place, [(source, target, method) for target in targets], placing)
+    keys = [_key_of_map(source, target) for target in targets]
     known = {key: found for key in keys if (found := _recent_maps.get(key)) is not None}
-    missing = {key: target for key, target in zip(keys, targets, strict=True) if key not in known}
+    missing = {
+        key: target
+        for key, target, placed in zip(keys, targets, by_place, strict=True)
+        if placed is None and key not in known
+    }
     if missing:
-        known |= _new_maps(source, missing, method, progress)
-    return [known[key] for key in keys]
-
-
-def _new_maps(
-    source: TransferShape, targets: Mapping[str, TransferShape], method: str, progress: compute.Progress
-) -> dict[str, ShapeMap]:
-    placing, progress = compute.section(progress, 0, 0.05), compute.section(progress, 0.05, 1)
-    pairs = [(key, source, target, method) for key, target in targets.items()]
-    by_place = dict(zip(targets, run_all(_map_by_place, pairs, placing), strict=True))
-    known = {key: found for key, found in by_place.items() if found is not None}
-    left = {key: target for key, target in targets.items() if key not in known}
-    return known | (_maps_by_shape(source, left, progress) if left else {})
+        known |= _maps_by_shape(source, missing, shaping)
+    return [placed or known[key] for key, placed in zip(keys, by_place, strict=True)]
 
 
 def _map_by_place(
-    key: str, source: TransferShape, target: TransferShape, method: str, progress: compute.Progress
+    source: TransferShape, target: TransferShape, method: str, progress: compute.Progress
 ) -> ShapeMap | None:
     """Return the map by place, None if another is wanted."""
     options = target.options
@@ -203,8 +201,8 @@ def _map_by_place(
     is_copy = np.array_equal(source.arrays.triangles, target.arrays.triangles)
     if method == "shape" or (method == "auto" and (is_led or is_copy)):
         return None
-    if options.mirrored:
-        raise Refusal(MIRRORED_BY_PLACE)
+    if options.mirrored or options.points.vertices:
+        raise Refusal(LED_BY_PLACE)
     progress = compute.naming(progress, target.name)
     progress(0.0, "Looking for the nearest points")
     meshes = _mesh_in_world(source), _mesh_in_world(target)
@@ -212,10 +210,8 @@ def _map_by_place(
         return None
     correspondence = compute.correspond_by_place(*meshes)
     if not correspondence.is_sure.any():
-        raise Refusal(NOT_IN_PLACE.format(target.name, source.name))
-    new = ShapeMap(correspondence, compute.welded_vertices(meshes[1]), (), ())
-    _recent_maps.put(key, new, len(target.arrays.vertices))
-    return new
+        raise Refusal(" ".join([NOT_IN_PLACE.format(target.name, source.name), *_unfinished(source, target)]))
+    return ShapeMap(correspondence, compute.welded_vertices(meshes[1]), (), ())
 
 
 def _mesh_in_world(shape: TransferShape) -> compute.TriangleMesh:
@@ -252,13 +248,12 @@ def _new_map(
     return new
 
 
-def _key_of_map(source: TransferShape, target: TransferShape, method: str) -> str:
+def _key_of_map(source: TransferShape, target: TransferShape) -> str:
     places = [array for shape in (source, target) for array in (shape.arrays.vertices, shape.arrays.triangles)]
-    if method != "shape":
-        places += [shape.to_world for shape in (source, target)]
     options = target.options
-    chosen = (options.mirrored, sorted(options.flips.items()), options.alternative)
-    return key_of([method, *places, *chosen, *options.points.vertices])
+    return key_of(
+        [*places, options.mirrored, sorted(options.flips.items()), options.alternative, *options.points.vertices]
+    )
 
 
 def _split_alike(source: TransferShape, target: TransferShape) -> TransferShape:
@@ -318,19 +313,19 @@ def _mapped(
     mapper, matching = _LayerMapper(shape_map, source, target), correspondence.matching
     mapped = [mapper.map(layer) for layer in given]
     if fills and not correspondence.is_sure.all():
-        mapped = [mapper.filled(layer) for layer in mapped]
+        mapped = mapper.filled_together([mapper.filled(layer) for layer in mapped], mapped)
     return MappedLayers(
         layers=mapped,
         is_sure=correspondence.is_sure,
         found_by=correspondence.found_by,
-        confidence=1.0 if matching is None else float(matching.confidence),
+        confidence=correspondence.overlap if matching is None else float(matching.confidence),
         unsure_parts=_unsure_parts(mapper, source, target, ~correspondence.is_sure),
         torn_seams=tuple(mapper.torn_seams),
         warnings=(
             *(f"{source.name}: {warning}" for warning in shape_map.source_warnings),
             *(f"{target.name}: {warning}" for warning in shape_map.target_warnings),
             *(f"{target.name}: {warning}" for warning in target.options.point_warnings(matching)),
-            *((FAR.format(n_far, target.name, source.name),) if (n_far := mapper.n_far) else ()),
+            *mapper.doubts_by_place(),
         ),
         unfinished=_unfinished(source, target),
     )
@@ -367,20 +362,33 @@ class _LayerMapper:
         self._welded = compute.TriangleMesh(target.arrays.vertices, self._places[target.arrays.triangles])
         self.torn_seams: list[str] = []
 
-    @property
-    def n_far(self) -> int:
-        """How many loose parts of the target lie nowhere on the source; 0 if it was matched by shape."""
+    def doubts_by_place(self) -> list[str]:
+        """Return sentences about what does not lie on the source; none if it was matched by shape."""
         if self._correspondence.matching is not None:
-            return 0
+            return []
+        names = self._target.name, self._source.name
         is_sure = self._correspondence.is_sure[self._welded.triangles].any(axis=1)
-        return int((np.bincount(self._welded.component_of_triangle, is_sure) == 0).sum())
+        n_far = int((np.bincount(self._welded.component_of_triangle, is_sure) == 0).sum())
+        unsure = 1 - self._correspondence.overlap
+        doubts = [NOT_ALL_THERE.format(unsure, *names)] if unsure > MUCH_UNSURE else []
+        return [*doubts, FAR.format(*names, n_far)] if n_far else doubts
 
     def filled(self, layer: Layer) -> Layer:
         """Return a mapped layer with what fits smoothly in place of what is unsure."""
         if not layer.can_blend or layer.kind == layers.CORNER:
             return layer
-        values = compute.fill_unsure(self._correspondence, self._welded, layer.values.astype(np.float64))
-        return layer.with_values(values[self._places])
+        return layer.with_values(self._filled_values(layer.values.astype(np.float64)))
+
+    def _filled_values(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return compute.fill_unsure(self._correspondence, self._welded, values)[self._places]
+
+    def filled_together(self, filled: list[Layer], mapped: list[Layer]) -> list[Layer]:
+        """Return filled layers whose weights sum to what filling their sums gives: by place each goes its own way."""
+        if self._correspondence.matching is not None or not any(layer.kind == layers.GROUP for layer in filled):
+            return filled
+        sums, wanted = _sum_of_groups(filled), self._filled_values(_sum_of_groups(mapped))
+        share = np.where(sums > 0, wanted / np.where(sums > 0, sums, 1), 1)
+        return [layer.with_values(layer.values * share) if layer.kind == layers.GROUP else layer for layer in filled]
 
     def map(self, layer: Layer) -> Layer:
         """Return the layer with values for the target."""
@@ -427,3 +435,7 @@ class _LayerMapper:
         if not keeps_seams:
             self.torn_seams.append(layer.name)
         return values
+
+
+def _sum_of_groups(given: list[Layer]) -> NDArray[np.float64]:
+    return np.sum([layer.values for layer in given if layer.kind == layers.GROUP], axis=0, dtype=np.float64)

@@ -184,8 +184,9 @@ def _doubts(obj: bpy.types.Object, source: str, mapped: MappedLayers) -> list[st
     doubts += [
         f'{obj.name}: the seams of "{name}" could not be kept, there are too many pieces.' for name in mapped.torn_seams
     ]
-    if mapped.confidence <= SURE:
+    if mapped.confidence <= SURE and mapped.found_by != "place":
         doubts.insert(0, f"{obj.name} is matched with a confidence of {mapped.confidence:.0%} only.")
+    if mapped.confidence <= SURE:
         doubts += mapped.unfinished
     if is_analyzed(mesh_of(obj)) and any(layer.kind == PARTS for layer in mapped.layers):
         doubts.append(HAS_PARTS.format(obj.name, source))

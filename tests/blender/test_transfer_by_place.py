@@ -90,12 +90,12 @@ def test_a_loose_part_that_lies_nowhere_is_told(body, capfd):
     lost = tube(0.2, 0.0, 1.0, x=30.0)
     shirt = dressed(body, joined(tube(1.03, 4.0, 8.0), lost))
     assert transfer(body, shirt, method="PLACE") == {"FINISHED"}
-    assert "1 loose parts of shirt lie nowhere on body; they are given what is nearest." in capfd.readouterr().out
+    assert "Loose parts of shirt that lie nowhere on body: 1; they are given what is nearest." in capfd.readouterr().out
 
 
 @pytest.mark.parametrize(
     ("options", "told"),
-    [({}, "does not lie on body anywhere"), ({"mirrored": True}, "Mirrored meshes do not lie on one another")],
+    [({}, "does not lie on body anywhere"), ({"mirrored": True}, "Points and Mirrored are for transfers by shape")],
 )
 def test_what_cannot_be_carried_by_place_is_refused_and_left_alone(body, options, told):
     shirt = dressed(body, tube(1.03, 4.0, 8.0))
@@ -112,3 +112,26 @@ def test_what_is_neither_alike_nor_there_is_told_of_both_ways(body):
     helmet.location.x += 100
     with pytest.raises(RuntimeError, match=r"not alike enough.*choose Mirrored.*choose By Place"):
         transfer(body, helmet)
+
+
+def test_weights_of_what_hangs_over_sum_to_what_they_sum_to_on_the_body(body):
+    lower = body.vertex_groups.new(name="Rest")
+    for vertex, height in enumerate((BODY.vertices[:, 2] / 10).tolist()):
+        lower.add([vertex], 1 - height, "REPLACE")
+    skirt = dressed(body, flared())
+    transfer(body, skirt, method="PLACE")
+    np.testing.assert_allclose(weights_of(skirt, "Height") + weights_of(skirt, "Rest"), 1, atol=1e-5)
+
+
+def test_what_does_not_lie_there_is_told_as_a_share(body, capfd):
+    transfer(body, dressed(body, flared(), "skirt"), method="PLACE")
+    assert "of skirt does not lie on body; if it stands in another pose, bring both into the same." in (
+        capfd.readouterr().out
+    )
+
+
+def flared():
+    """Return a tube around the body whose lower half goes away from it."""
+    shirt = tube(1.03, 4.0, 8.0, n_along=24)
+    wider = 1 + np.maximum(0, 6.2 - shirt.vertices[:, 2])
+    return type(shirt)(shirt.vertices * np.stack([wider, wider, np.ones_like(wider)], axis=1), shirt.triangles)

@@ -15,16 +15,26 @@ from .surface_points import SurfacePoints, SurfaceTree
 
 # Seams are kept between at most this many pieces; a layer with more is taken as it is at each corner.
 MOST_ISLANDS = 400
+# Of a piece that lies on the source with less than this share of its vertices nothing is filled in: of a helmet with
+# 0.13 the filled weights were twice as far off as the nearest, with 0.49 less far.
+LEAST_SUPPORT = 0.3
 # Values at the two sides of an edge that differ by less than this belong together, as a fraction of their range.
 SAME_VALUE = 1e-5
 
 
 @told_if_full
 def fill_unsure(correspondence: Correspondence, target: TriangleMesh, values: Floats) -> Floats:
-    """Return values (Vt, n) with those of unsure vertices filled in smoothly from the sure ones around them."""
+    """Return values (Vt, n) with those of unsure vertices filled in smoothly from the sure ones around them.
+
+    By place, pieces of which less than `LEAST_SUPPORT` is sure keep what they have: the nearest is more likely right.
+    """
+    if correspondence.found_by != BY_PLACE:
+        return harmonic_fill(target, values, correspondence.is_sure)
     # What hangs over, as a skirt between the legs, goes on with the slope of what lies on the source.
-    fill = biharmonic_fill if correspondence.found_by == BY_PLACE else harmonic_fill
-    return fill(target, values, correspondence.is_sure)
+    edges = target.edges.vertices
+    piece = connected_pieces(edges[:, 0], edges[:, 1], len(target.vertices))
+    share = np.bincount(piece, correspondence.is_sure) / np.bincount(piece)
+    return biharmonic_fill(target, values, correspondence.is_sure | (share < LEAST_SUPPORT)[piece])
 
 
 @told_if_full
