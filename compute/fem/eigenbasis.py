@@ -15,6 +15,7 @@ from .assembly import mass_matrix
 from .degenerate import fixed_basis
 from .eigensolver import eigen_problem, lowest_eigenpairs
 from .order_choice import require_functions
+from .shift_invert import WantedPairs
 from .space import FunctionSpace, function_space
 
 # In units of 1 / area; smaller eigenvalues are lost in round-off. A needle of proportion 1 to 1e6 has 1e-5.
@@ -149,7 +150,8 @@ def solve_on_surface(
     _check_count(n_functions, int(is_free.sum()) - n_constant)
     require_functions(surface.mesh, order, n_functions)
     problem = eigen_problem(space, is_free)
-    values, functions = lowest_eigenpairs(problem, n_functions + n_constant, n_constant, largest_ratio, progress)
+    wanted = WantedPairs(n_functions + n_constant, n_constant, largest_ratio)
+    values, functions = lowest_eigenpairs(problem, wanted, progress)
     values, functions = values[n_constant:], functions[:, n_constant:]
     if not values[0] > LEAST_VALUE:
         raise SpectrumError("The faces are collapsed or barely hang together; merge the vertices by distance first.")
