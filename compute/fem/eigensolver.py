@@ -44,6 +44,9 @@ SAME_VALUE = 1e-3
 # Eigenvalues of linear elements are too large; up to this much when they decide how many functions are needed.
 LINEAR_EXCESS = 1.1
 
+# (k,) eigenvalues in units of 1 / area, ascending, and (N, k) functions, orthonormal with the area as unit.
+EigenPairs = tuple[Floats, Floats]
+
 
 @dataclass(frozen=True, eq=False)
 class EigenProblem:
@@ -104,7 +107,9 @@ def eigen_problem(space: FunctionSpace, is_free: Bools) -> EigenProblem:
     return EigenProblem(space, is_free, metric(space.mesh), leaves)
 
 
-def lowest_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> tuple[Floats, Floats]:
+def lowest_eigenpairs(
+    problem: EigenProblem, wanted: WantedPairs, progress: Progress, start: EigenPairs | None = None
+) -> EigenPairs:
     """Return the smallest eigenvalues and their functions.
 
     Parameters
@@ -112,6 +117,9 @@ def lowest_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Prog
     problem : EigenProblem
     wanted : WantedPairs
         How many.
+    progress : Progress
+    start : EigenPairs, optional
+        Those of linear elements, by :func:`linear_eigenpairs`; computed where they are needed if None.
 
     Returns
     -------
@@ -127,15 +135,23 @@ def lowest_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Prog
     """
     if problem.space.element.order == 1 or problem.is_free.sum() < BLOCK_UNKNOWNS:
         return _plain_eigenpairs(problem, wanted, progress)
-    of_linear = replace(wanted, largest_ratio=LINEAR_EXCESS * wanted.largest_ratio)
-    if of_linear.at_most > DENSE_SHARE * problem.linear.is_free.sum():
+    if wanted.at_most > DENSE_SHARE * problem.linear.is_free.sum():
         return _plain_eigenpairs(problem, wanted, progress)
-    values, functions = _plain_eigenpairs(problem.linear, of_linear, section(progress, 0.0, 0.15))
+    values, functions = start or linear_eigenpairs(problem.linear, wanted, section(progress, 0.0, 0.15))
     # One function more than needed shows that none is missing.
-    n_pairs = min(of_linear.n_within(values) + 1, len(values))
+    n_pairs = min(_excessive(wanted).n_within(values) + 1, len(values))
     width = max(LEAST_WIDTH, _multiplicity(values[:n_pairs]) + 1)
-    start = functions[:, :n_pairs] @ _mixture(n_pairs, width)
-    return _block_eigenpairs(problem, start, values[:n_pairs], section(progress, 0.15, 1.0))
+    mixed = functions[:, :n_pairs] @ _mixture(n_pairs, width)
+    return _block_eigenpairs(problem, mixed, values[:n_pairs], section(progress, 0.15, 1.0))
+
+
+def linear_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> EigenPairs:
+    """Return the pairs of linear elements from which those of a higher order are found that are wanted."""
+    return _plain_eigenpairs(problem, _excessive(wanted), progress)
+
+
+def _excessive(wanted: WantedPairs) -> WantedPairs:
+    return replace(wanted, largest_ratio=LINEAR_EXCESS * wanted.largest_ratio)
 
 
 def _multiplicity(values: Floats) -> int:
@@ -148,7 +164,7 @@ def _mixture(n_functions: int, width: int) -> Floats:
     return np.random.default_rng(0).standard_normal((n_functions, width))
 
 
-def _plain_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> tuple[Floats, Floats]:
+def _plain_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> EigenPairs:
     """Return the lowest eigenpairs from ARPACK or, if there are few unknowns, from full matrices."""
     unknowns = problem.elimination_order
     stiffness, mass = problem.matrices(unknowns)
@@ -165,7 +181,7 @@ def _plain_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Prog
 
 def _block_eigenpairs(
     problem: EigenProblem, linear_start: Floats, linear_values: Floats, progress: Progress
-) -> tuple[Floats, Floats]:
+) -> EigenPairs:
     """Return the lowest eigenpairs by block Lanczos iteration from linear functions on the same mesh."""
     n_pairs = len(linear_values)
     space, unknowns = problem.space, problem.elimination_order
