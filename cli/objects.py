@@ -53,7 +53,7 @@ def row_of(
     parts = part_rows(mesh_of(obj), labels)
     for part in parts:
         part["area"] *= size_of(obj) ** 2
-    return {
+    row: ObjectRow = {
         "name": obj.name,
         "level": labels.level,
         "n_levels": result.stored.part_tree.hierarchy.n_levels,
@@ -61,6 +61,9 @@ def row_of(
         "seconds": round(result.seconds, 3),
         "warnings": list(messages.warnings),
     }
+    if result.elements is not None:
+        row["elements"] = result.elements.lower()
+    return row
 
 
 def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], ObjectRow], repairs: list[str]) -> ObjectRow:

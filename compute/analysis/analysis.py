@@ -1,6 +1,7 @@
 """The heavy step: from a mesh to everything that levels and parts are read from."""
 
 import dataclasses
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -13,7 +14,7 @@ from ..errors import LevelError, RegistrationError
 from ..fem.eigenbasis import Eigenbasis, solve_on_surface
 from ..fem.matching_basis import MatchingBasis
 from ..fields.field_choice import DEFAULT_FUNCTIONS, n_available
-from ..fields.scalar_field import DIFFUSION, Net, ScalarField
+from ..fields.scalar_field import DIFFUSION, USER, Net, ScalarField
 from ..memory import require_memory, told_if_full
 from ..msc.diagram import PersistenceDiagram
 from ..msc.morse_smale import FieldTopology, MorseSmaleComplex
@@ -99,6 +100,14 @@ class Analysis:
     def net(self) -> Net:
         """The triangles the field is linear on."""
         return self.field.net
+
+    @property
+    def order(self) -> int | None:
+        """Degree of the finite elements that the field was computed with; None if it is the user's own."""
+        if self.field.name == USER:
+            return None
+        # The net has a triangle for each square of the order.
+        return math.isqrt(len(self.net.triangles) // len(self.surface.mesh.triangles))
 
     @cached_property
     def eigenbasis(self) -> Eigenbasis:

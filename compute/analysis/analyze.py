@@ -39,7 +39,8 @@ def analyze(
     n_functions : int, optional
         Eigenfunctions to compute; 30 for "diffusion", otherwise 12 or as many as needed.
     order : 1, 2, 3 or "auto"
-        Degree of the finite elements; "auto" takes cubic ones as long as they are cheap.
+        Degree of the finite elements; "auto" takes linear ones where they are accurate enough for the parts, otherwise
+        cubic ones as long as memory allows.
     boundary : "neumann" or "dirichlet"
         Whether the eigenfunctions are free or zero on the boundary of an open mesh.
     shells : "bridged", "largest" or "separate"

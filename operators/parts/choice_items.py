@@ -42,7 +42,7 @@ SHELL_ITEMS = _items(
 ORDER_ITEMS = _items(
     compute.ORDERS,
     {
-        "auto": ("Automatic", "Cubic as long as it is cheap, then quadratic, then linear"),
+        "auto": ("Automatic", "Linear where that gives the same parts, otherwise cubic while memory allows"),
         1: ("Linear", "Fast, for large meshes"),
         2: ("Quadratic", "Between the two"),
         3: ("Cubic", "Most accurate"),

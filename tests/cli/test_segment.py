@@ -88,6 +88,7 @@ def test_the_report_adds_up(run, star_off, tmp_path):
     row = report["files"][0]["objects"][0]
     mesh = star(5, 3)
     assert (code, report["version"]) == (0, 1)
+    assert row["elements"] == "cubic"
     assert len(row["parts"]) == 4
     assert sum(part["faces"] for part in row["parts"]) == len(mesh.triangles)
     assert sum(part["area"] for part in row["parts"]) == pytest.approx(mesh.areas.sum(), rel=1e-5)

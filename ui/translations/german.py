@@ -55,7 +55,7 @@ GERMAN: dict[str, str] = {
     "Order": "Ordnung",
     "Degree of the finite elements: higher is more accurate and slower": "Grad der finiten Elemente: höher ist genauer und langsamer",
     "Automatic": "Automatisch",
-    "Cubic as long as it is cheap, then quadratic, then linear": "Kubisch, solange es billig ist, dann quadratisch, dann linear",
+    "Linear where that gives the same parts, otherwise cubic while memory allows": "Linear, wo das dieselben Teile gibt, sonst kubisch, solange der Speicher reicht",
     "Linear": "Linear",
     "Fast, for large meshes": "Schnell, für große Netze",
     "Quadratic": "Quadratisch",
