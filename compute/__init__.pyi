@@ -5,6 +5,7 @@ from .analysis.analysis import Analysis as Analysis
 from .analysis.analyze import analyze as analyze
 from .analysis.readings import reeb_graph as reeb_graph
 from .analysis.readings import zero_level as zero_level
+from .choices import BORDERS as BORDERS
 from .choices import BOUNDARIES as BOUNDARIES
 from .choices import FIELDS as FIELDS
 from .choices import MODES as MODES
@@ -58,6 +59,7 @@ from .registration.parts.transferred_labels import Divisible as Divisible
 from .registration.parts.transferred_labels import FaceLabels as FaceLabels
 from .registration.parts.transferred_labels import divisible as divisible
 from .segmentation.borders.edge_borders import shortened_borders as shortened_borders
+from .segmentation.borders.edge_paths import arcs_by_corners as arcs_by_corners
 from .segmentation.borders.edge_profile import EdgeProfile as EdgeProfile
 from .segmentation.borders.edge_profile import vertex_heights as vertex_heights
 from .segmentation.borders.level_set_borders import Crossings as Crossings
@@ -90,6 +92,7 @@ from .segmentation.faces.branches import connected_branches as connected_branche
 from .segmentation.faces.face_graph import FaceGraph as FaceGraph
 from .segmentation.faces.face_graph import face_graph as face_graph
 from .segmentation.faces.part_tree import PartTree as PartTree
+from .segmentation.faces.part_tree import area_shares as area_shares
 from .segmentation.hierarchy.arc_measures import ArcMeasures as ArcMeasures
 from .segmentation.hierarchy.arc_tree import ALWAYS as ALWAYS
 from .segmentation.hierarchy.arc_tree import NEVER as NEVER

@@ -8,7 +8,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..choices import NESTED
+from ..choices import EXACT, NESTED
 from ..errors import LevelError, RegistrationError
 from ..fem.eigenbasis import Eigenbasis, solve_on_surface
 from ..fem.matching_basis import MatchingBasis
@@ -18,6 +18,7 @@ from ..memory import require_memory, told_if_full
 from ..msc.diagram import PersistenceDiagram
 from ..msc.morse_smale import FieldTopology, MorseSmaleComplex
 from ..progress import Progress, silent
+from ..segmentation.borders.edge_paths import along_edges, field_lengths
 from ..segmentation.borders.edge_profile import EdgeProfile, edge_profile
 from ..segmentation.borders.level_set_borders import (
     Polyline,
@@ -29,7 +30,7 @@ from ..segmentation.borders.level_set_borders import (
 from ..segmentation.faces.arc_areas import arc_areas
 from ..segmentation.faces.branches import build_branches
 from ..segmentation.faces.face_graph import face_graph
-from ..segmentation.faces.part_tree import BYTES_PER_NODE, TOO_MANY_FACES, PartTree
+from ..segmentation.faces.part_tree import BYTES_PER_NODE, TOO_MANY_FACES, PartTree, area_shares
 from ..segmentation.hierarchy.arc_measures import ArcMeasures
 from ..segmentation.hierarchy.levels import Hierarchy
 from ..segmentation.hierarchy.measured_hierarchy import measured_hierarchy
@@ -71,6 +72,8 @@ class Analysis:
         Sentences for the user.
     field_choice : "diffusion", int or (V,) array
         The field that was asked for.
+    face_borders : "edges" or "exact"
+        Where parts end on whole faces.
 
     Examples
     --------
@@ -88,6 +91,7 @@ class Analysis:
     measures: tuple[ArcMeasures, ...]
     warnings: tuple[str, ...]
     field_choice: str | int | ArrayLike
+    face_borders: str
     _topology: FieldTopology
     _arc_of_vertex: tuple[Ints, ...]
     _known_basis: Eigenbasis | None = dataclasses.field(repr=False)
@@ -249,7 +253,11 @@ class Analysis:
         ]
         heights = tuple(closing_heights(self.field.values, tree) for tree in self.hierarchy.trees)
         branches = build_branches([tree.parent for tree in self.hierarchy.trees], shares, graph)
-        return PartTree(self.hierarchy, self.measures, heights, branches)
+        exact = PartTree(self.hierarchy, self.measures, heights, branches, area_shares(self.hierarchy.trees, branches))
+        if self.face_borders == EXACT:
+            return exact
+        length = field_lengths(self.surface, self.field)[graph.shared]
+        return along_edges(exact, shares, graph, length)
 
     def profile(self, edges: Ints | None = None) -> EdgeProfile:
         """Return the field along edges of the input.

@@ -10,6 +10,7 @@ from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
 from ..blender.typed_properties import EnumProperty, TypedProperties
 from ..mesh_data.custom_normals import normals_kept
+from ..mesh_data.mesh_arrays import n_corners_of_polygon, vertex_of_corner
 from ..mesh_data.mesh_cut import cut_mesh
 from ..mesh_state import analysis_writer, corrected_analysis, registration_record
 from ..mesh_state.analyzed_faces import AnalyzedFaces
@@ -76,7 +77,12 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     output_registry.refuse_foreign_results(state)
     level, mode = state.level, state.mode
     profile, crossings = corrected_analysis.crossings(state, state.border_source)
-    arcs = state.analysis.part_tree.arcs_of_faces
+    part_tree = state.analysis.part_tree
+    polygon_of_corner = np.repeat(np.arange(len(mesh.polygons)), n_corners_of_polygon(mesh))
+    corners = polygon_of_corner, vertex_of_corner(mesh).astype(np.int64)
+    arcs = compute.arcs_by_corners(
+        part_tree, part_tree.cut_arcs(level, mode), *corners, profile.arcs[: len(part_tree.trees)]
+    )
     # From here on the faces are not what they were; a refusal before has not touched them.
     with faces_or_nothing(mesh):
         with normals_kept(mesh):

@@ -21,7 +21,11 @@ def is_sound(part_tree: compute.PartTree) -> bool:
         _is_sound_tree(tree, n_features)
         and _are_sound_measures(measures, len(tree.parent))
         and are_sound_branches(pieces, len(tree.parent))
-        for tree, measures, pieces in zip(hierarchy.trees, part_tree.measures, branches, strict=True)
+        and shares.shape == tree.parent.shape
+        and lie_within(shares, 0, np.inf)
+        for tree, measures, pieces, shares in zip(
+            hierarchy.trees, part_tree.measures, branches, part_tree.area_shares, strict=True
+        )
     )
 
 

@@ -304,6 +304,7 @@ def test_a_state_of_the_first_version_is_read(person):
 
 
 def test_cutting_inserts_the_borders_where_corrections_put_them(person):
+    bpy.ops.eigenparts.analyze(borders="EXACT")
     first, second = arms(person)
     bpy.ops.eigenparts.move_border(part=first, offset=-0.07)
     bpy.ops.eigenparts.split_part(part=first, position=0.5)

@@ -124,7 +124,7 @@ def test_a_part_that_falls_apart_is_told(capfd, level, is_told):
     """At level 3 the head and an arm of the symmetric body are one part, joined within single faces."""
     character = humanoid(5000)
     mesh = add_object(character.mesh_in_pose("rest"), character.quads).data
-    bpy.ops.eigenparts.analyze(order="1")
+    bpy.ops.eigenparts.analyze(order="1", borders="EXACT")
     bpy.ops.eigenparts.segment(level=level)
     n_before = np.bincount(values_of(mesh, "part"))
     bpy.ops.eigenparts.cut()

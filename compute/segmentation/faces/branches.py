@@ -60,7 +60,7 @@ def build_branches(parents: list[Ints], shares: list[ArcAreas], graph: FaceGraph
     """
     n_faces = len(graph.area)
     arcs = [
-        _majority_arc(parent, share, n_faces)[graph.stands_for] for parent, share in zip(parents, shares, strict=True)
+        majority_arc(parent, share, n_faces)[graph.stands_for] for parent, share in zip(parents, shares, strict=True)
     ]
     return connected_branches(arcs, graph)
 
@@ -136,7 +136,7 @@ def repaired_labels(labels: Ints, branches: Branches, bodies: tuple[int, ...] = 
     return labels
 
 
-def _majority_arc(parent: Ints, shares: ArcAreas, n_faces: int) -> Ints:
+def majority_arc(parent: Ints, shares: ArcAreas, n_faces: int) -> Ints:
     """Return for each face the innermost arc whose subtree holds more than half of it; -1 for faces without shares."""
     arc_of_face = np.full(n_faces, -1)
     # A face that symmetry halves is on neither side.

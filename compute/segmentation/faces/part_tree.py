@@ -1,7 +1,6 @@
 """The part tree: the features of a shape with the faces they lie on, which every level is read from."""
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -36,12 +35,16 @@ class PartTree:
         The value of the field at which each arc closes; not a number where it closes at no saddle.
     branches : tuple of Branches
         The faces of the arcs. Their pieces are the same in all trees.
+    area_shares : tuple of (A,) float64
+        The share of each arc in the area of its shell, with each face where its greater half lies: what is a part does
+        not depend on where borders are moved to.
     """
 
     hierarchy: Hierarchy
     measures: tuple[ArcMeasures, ...]
     closing_heights: tuple[Floats, ...]
     branches: tuple[Branches, ...]
+    area_shares: tuple[Floats, ...]
 
     @property
     def trees(self) -> tuple[ArcTree, ...]:
@@ -90,6 +93,15 @@ class PartTree:
             cuts = self._numbered(is_cut)
         return cuts
 
+    @property
+    def ends(self) -> list[Bools]:
+        """For each tree, the mask (A,) of the arcs at which parts end at some level, in either mode."""
+        last, default_level = self.hierarchy.n_levels - 1, self.hierarchy.default_level
+        # Beyond the default level nested parts only become more.
+        levels = {NESTED: (*range(default_level + 1), last), FEATURES: range(last + 1)}
+        cuts = [self._cut_at_level(level, mode) for mode, chosen in levels.items() for level in chosen]
+        return [np.logical_or.reduce(of_tree) for of_tree in zip(*cuts, strict=True)]
+
     def labels_of_branches(self, cuts: list[Ints]) -> Ints:
         """Return the label (B,) of each branch, given the parts (A,) that are cut off at the arcs of each tree.
 
@@ -114,13 +126,13 @@ class PartTree:
         default_level = self.hierarchy.default_level
         return [
             nested_cuts(tree, measures, shares, level=level, default_level=default_level)
-            for tree, measures, shares in zip(self.trees, self.measures, self._shares_of_shells, strict=True)
+            for tree, measures, shares in zip(self.trees, self.measures, self.area_shares, strict=True)
         ]
 
-    @cached_property
-    def _shares_of_shells(self) -> list[Floats]:
-        """For each tree, the share (A,) of each arc in the area of its shell."""
-        return [_share_of_shell(tree, pieces) for tree, pieces in zip(self.trees, self.branches, strict=True)]
+
+def area_shares(trees: tuple[ArcTree, ...], branches: tuple[Branches, ...]) -> tuple[Floats, ...]:
+    """Return for each tree the share (A,) of each arc in the area of its shell."""
+    return tuple(_share_of_shell(tree, pieces) for tree, pieces in zip(trees, branches, strict=True))
 
 
 def _share_of_shell(tree: ArcTree, pieces: Branches) -> Floats:
