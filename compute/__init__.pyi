@@ -59,7 +59,6 @@ from .registration.parts.transferred_labels import Divisible as Divisible
 from .registration.parts.transferred_labels import FaceLabels as FaceLabels
 from .registration.parts.transferred_labels import divisible as divisible
 from .segmentation.borders.edge_borders import shortened_borders as shortened_borders
-from .segmentation.borders.edge_paths import arcs_by_corners as arcs_by_corners
 from .segmentation.borders.edge_profile import EdgeProfile as EdgeProfile
 from .segmentation.borders.edge_profile import vertex_heights as vertex_heights
 from .segmentation.borders.level_set_borders import Crossings as Crossings
@@ -89,10 +88,10 @@ from .segmentation.edits.relief import Relief as Relief
 from .segmentation.edits.relief import relief_of as relief_of
 from .segmentation.faces.branches import Branches as Branches
 from .segmentation.faces.branches import connected_branches as connected_branches
+from .segmentation.faces.exact_labels import exact_labels as exact_labels
 from .segmentation.faces.face_graph import FaceGraph as FaceGraph
 from .segmentation.faces.face_graph import face_graph as face_graph
 from .segmentation.faces.part_tree import PartTree as PartTree
-from .segmentation.faces.part_tree import area_shares as area_shares
 from .segmentation.hierarchy.arc_measures import ArcMeasures as ArcMeasures
 from .segmentation.hierarchy.arc_tree import ALWAYS as ALWAYS
 from .segmentation.hierarchy.arc_tree import NEVER as NEVER

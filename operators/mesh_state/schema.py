@@ -10,7 +10,6 @@ SCHEMA = 2
 # Of the analysis. Trees, branches and closing heights stand once for each merge tree, with its number behind the name.
 VERSION, FINGERPRINT, DESCRIPTION, SHELLS = "schema", "fingerprint", "description", "shells"
 HIERARCHY, TREE, PIECES_OF_TREE, CLOSING_HEIGHTS = "hierarchy", "tree_{}", "branches_{}", "closing_heights_{}"
-AREA_SHARES = "area_shares_{}"
 INSIDE_EDGES = "n_inside_edge"
 # The nine numbers that the mesh was stretched with to its shape in the world; not there if it was not.
 STRETCH = "stretch"

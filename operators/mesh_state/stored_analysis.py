@@ -17,7 +17,6 @@ from ...tasks.refusals import Refusal
 from ..mesh_data.mesh_arrays import OwnAttribute, read_edges, read_own_floats, read_own_integers
 from .schema import (
     ARCS,
-    AREA_SHARES,
     BRANCHES,
     CLOSING_HEIGHTS,
     CUT,
@@ -45,7 +44,6 @@ def packed_tree(part_tree: compute.PartTree) -> dict[str, Any]:
         HIERARCHY: packed(hierarchy, _features(hierarchy)),
         **{TREE.format(i): packed(tree) | packed(measures) for i, (tree, measures) in arcs},
         **{CLOSING_HEIGHTS.format(i): packed_array(heights) for i, heights in closing},
-        **{AREA_SHARES.format(i): packed_array(shares) for i, shares in enumerate(part_tree.area_shares)},
         **packed_branches(part_tree.branches),
     }
 
@@ -124,9 +122,14 @@ def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str, stretch: St
 def unpacked_branches(group: Any, of_faces: list[NDArray[np.int32]]) -> tuple[compute.Branches, ...]:
     """Return the branches in a group, with those of the faces for each tree."""
     return tuple(
-        compute.Branches(of_face=of_face, **unpacked(group[PIECES_OF_TREE.format(i)], compute.Branches))
+        compute.Branches(of_face=of_face, **unpacked(_with_shown(group[PIECES_OF_TREE.format(i)]), compute.Branches))
         for i, of_face in enumerate(of_faces)
     )
+
+
+def _with_shown(pieces: Any) -> Any:
+    """Return stored branches with the arcs that they are shown in; in 0.1.0 these were their own."""
+    return pieces if "shown" in pieces else {**pieces, "shown": pieces["arc"]}
 
 
 def unpacked_source(mesh: bpy.types.Mesh, group: Any, part_tree: compute.PartTree) -> BorderSource:
@@ -175,24 +178,12 @@ def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
     n_trees = 2 if TREE.format(1) in group else 1
     tables = [group[TREE.format(i)] for i in range(n_trees)]
     trees = tuple(compute.ArcTree(**unpacked(table, compute.ArcTree)) for table in tables)
-    branches = unpacked_branches(group, [read_own_integers(mesh, attribute) for attribute in BRANCHES[:n_trees]])
     return compute.PartTree(
         hierarchy=compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees),
         measures=tuple(compute.ArcMeasures(**unpacked(table, compute.ArcMeasures)) for table in tables),
         closing_heights=tuple(_unpacked_closing_heights(group, i, tree) for i, tree in enumerate(trees)),
-        branches=branches,
-        area_shares=_unpacked_area_shares(group, trees, branches),
+        branches=unpacked_branches(group, [read_own_integers(mesh, attribute) for attribute in BRANCHES[:n_trees]]),
     )
-
-
-def _unpacked_area_shares(
-    group: Any, trees: tuple[compute.ArcTree, ...], branches: tuple[compute.Branches, ...]
-) -> tuple[NDArray[np.float64], ...]:
-    """Return for each tree the share (A,) of each arc in the area of its shell; 0.1.0 took it from the faces."""
-    names = [AREA_SHARES.format(i) for i in range(len(trees))]
-    if not any(name in group for name in names):
-        return compute.area_shares(trees, branches)
-    return tuple(unpacked_array(group[name], "float64") for name in names)
 
 
 def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> NDArray[np.float64]:

@@ -21,11 +21,7 @@ def is_sound(part_tree: compute.PartTree) -> bool:
         _is_sound_tree(tree, n_features)
         and _are_sound_measures(measures, len(tree.parent))
         and are_sound_branches(pieces, len(tree.parent))
-        and shares.shape == tree.parent.shape
-        and lie_within(shares, 0, np.inf)
-        for tree, measures, pieces, shares in zip(
-            hierarchy.trees, part_tree.measures, branches, part_tree.area_shares, strict=True
-        )
+        for tree, measures, pieces in zip(hierarchy.trees, part_tree.measures, branches, strict=True)
     )
 
 
@@ -70,12 +66,13 @@ def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
     """Whether the tables of branches fit each other and a tree."""
     n_branches = branches.arc.size
     return (
-        branches.area.shape == branches.n_faces.shape == branches.arc.shape == (n_branches,)
+        branches.area.shape == branches.n_faces.shape == branches.arc.shape == branches.shown.shape == (n_branches,)
         and branches.borders.shape == (branches.border_length.size, 2)
         and branches.border_length.ndim == 1
         and lie_within(branches.n_faces, 0, len(branches.of_face) + 1)
         and lie_within(branches.area, 0, np.inf)
         and lie_within(branches.arc, 0, n_arcs)
+        and lie_within(branches.shown, 0, n_arcs)
         and lie_within(branches.borders, 0, n_branches)
         and lie_within(branches.of_face, 0, n_branches)
     )

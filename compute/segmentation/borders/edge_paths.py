@@ -10,16 +10,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...fields.scalar_field import ScalarField
 from ...surface.cleaning import Surface
 from ...surface.mesh import Bools, Floats, Ints, sum_by
 from ..faces.arc_areas import ArcAreas
-from ..faces.branches import connected_branches, majority_arc
+from ..faces.branches import connected_branches
 from ..faces.face_graph import FaceGraph
 from ..faces.part_tree import PartTree
-from ..hierarchy.arc_tree import ArcTree
+from ..hierarchy.arc_tree import NO_ARC, ArcTree
 from .least_cut import N_RINGS, STRAYING, least_cut
 
 # How much more an edge costs that runs straight up or down the field than one along a level set: one line of edges
@@ -98,38 +97,13 @@ def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, l
     .. [1] Chan, Esedoglu, "Aspects of Total Variation Regularized L1 Function Approximation", SIAM J. Appl. Math. 2005:
        the least sum of a set's perimeter and of its difference from a given one.
     """
-    arcs = [
+    shown = [
         _Borders(tree, is_end & tree.has_saddle, arc.copy(), share, graph, length).moved()[graph.stands_for]
         for tree, is_end, arc, share in zip(
             part_tree.trees, part_tree.ends, part_tree.arcs_of_faces, shares, strict=True
         )
     ]
-    return replace(part_tree, branches=connected_branches(arcs, graph))
-
-
-def arcs_by_corners(
-    part_tree: PartTree, cuts: list[Ints], face: Ints, vertex: Ints, arc_of_vertex: tuple[NDArray[np.int32], ...]
-) -> list[Ints]:
-    """Return for each tree the arcs (F,) of faces, those of most of their corners where these lie in another part.
-
-    Parameters
-    ----------
-    part_tree : PartTree
-    cuts : list of (A,) int64
-        For each tree, the part that is cut off at each arc, 0 where nothing is.
-    face, vertex : (c,) int64
-        Of each corner.
-    arc_of_vertex : tuple of (V,) int32
-        For each tree; -1 where a vertex was not analyzed.
-    """
-    arcs = []
-    for tree, cut, arc, of_vertex in zip(part_tree.trees, cuts, part_tree.arcs_of_faces, arc_of_vertex, strict=True):
-        is_known = of_vertex[vertex] >= 0
-        corners = ArcAreas(face[is_known], of_vertex[vertex][is_known].astype(np.int64), np.ones(is_known.sum()))
-        most = majority_arc(tree.parent, corners, len(arc))
-        part = tree.spread(cut)
-        arcs.append(np.where((most >= 0) & (part[most] != part[arc]), most, arc))
-    return arcs
+    return replace(part_tree, branches=connected_branches(part_tree.arcs_of_faces, graph, shown))
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,14 +126,36 @@ class _Borders:
         return _FaceRows(self.shares.face, len(self.arc))
 
     def moved(self) -> Ints:
+        """Move all borders, those that are next to each other at once: what is symmetric stays so."""
         is_core, is_done = self._cores(), np.zeros(len(self.tree.parent), dtype=bool)
-        for end in np.flatnonzero(self.is_end).tolist():
-            inside = self.tree.subtree(end)
-            crossing = self._crossing(inside)
-            if len(crossing):
-                self._move(end, inside, crossing, is_core, is_done)
-            is_done |= inside
+        depth = self._depth()
+        for number in range(1, 1 + int(depth.max(initial=0))):
+            ends = np.flatnonzero(depth == number).tolist()
+            insides = [self.tree.subtree(end) for end in ends]
+            is_taken = is_done | np.logical_or.reduce(insides)
+            # What a part wins belongs to no other that is as deep; what it loses was its own.
+            fixed = [is_done | (is_taken & ~inside) for inside in insides]
+            moves = [self._move(inside, arcs, is_core) for inside, arcs in zip(insides, fixed, strict=True)]
+            self._apply(ends, moves)
+            is_done = is_taken
         return self.arc
+
+    def _depth(self) -> Ints:
+        """Return (A,) how deep the ends inside each end are nested, itself counted; 0 where none is."""
+        inside, depth = np.zeros((2, len(self.is_end)), dtype=np.int64)
+        for arc, parent in enumerate(self.tree.parent.tolist()):
+            if self.is_end[arc]:
+                depth[arc] = inside[arc] = inside[arc] + 1
+            if parent != NO_ARC:
+                inside[parent] = max(inside[parent], inside[arc])
+        return depth
+
+    def _apply(self, ends: list[int], moves: list[tuple[Ints, Ints]]) -> None:
+        """Give faces to the parts that they were won for, where it is one alone, and take away those that were lost."""
+        winners = np.bincount(np.concatenate([won for won, _ in moves]), minlength=len(self.arc))
+        for end, (won, lost) in zip(ends, moves, strict=True):
+            self.arc[won[winners[won] == 1]] = end
+            self.arc[lost] = self.tree.parent[end]
 
     def _crossing(self, mark: Ints | Bools) -> Ints:
         """Return the pairs of neighbours whose arcs have different marks."""
@@ -191,11 +187,14 @@ class _Borders:
         faces = np.concatenate(bands)
         return faces, ring[faces].astype(np.int64)
 
-    def _move(self, end: int, inside: Bools, crossing: Ints, is_core: Bools, is_done: Bools) -> None:
-        """Move the border of one subtree of arcs."""
+    def _move(self, inside: Bools, is_fixed: Bools, is_core: Bools) -> tuple[Ints, Ints]:
+        """Return the faces that a subtree of arcs wins and loses where its border is short."""
+        crossing = self._crossing(inside)
+        if not len(crossing):
+            return crossing, crossing
         band, ring = self._rings(crossing)
         arcs = self.arc[band]
-        is_inside, stays = inside[arcs], is_core[band] | is_done[arcs] | (ring == N_RINGS)
+        is_inside, stays = inside[arcs], is_core[band] | is_fixed[arcs] | (ring == N_RINGS)
         place = np.full(len(self.arc), -1)
         place[band] = np.arange(len(band))
         rows, _ = self._neighbours.of(band)
@@ -205,8 +204,7 @@ class _Borders:
         new = least_cut(
             place[self.graph.neighbours[pairs]], self.length[pairs], stays & is_inside, stays & ~is_inside, gain
         )
-        self.arc[band[new & ~is_inside]] = end
-        self.arc[band[is_inside & ~new]] = self.tree.parent[end]
+        return band[new & ~is_inside], band[is_inside & ~new]
 
     def _share_inside(self, band: Ints, inside: Bools) -> Floats:
         """Return the share of some faces that lies on the arcs inside."""

@@ -1,6 +1,7 @@
 """The part tree: the features of a shape with the faces they lie on, which every level is read from."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -35,16 +36,12 @@ class PartTree:
         The value of the field at which each arc closes; not a number where it closes at no saddle.
     branches : tuple of Branches
         The faces of the arcs. Their pieces are the same in all trees.
-    area_shares : tuple of (A,) float64
-        The share of each arc in the area of its shell, with each face where its greater half lies: what is a part does
-        not depend on where borders are moved to.
     """
 
     hierarchy: Hierarchy
     measures: tuple[ArcMeasures, ...]
     closing_heights: tuple[Floats, ...]
     branches: tuple[Branches, ...]
-    area_shares: tuple[Floats, ...]
 
     @property
     def trees(self) -> tuple[ArcTree, ...]:
@@ -60,6 +57,16 @@ class PartTree:
     def arcs_of_faces(self) -> list[Ints]:
         """For each tree, the arc (F,) of each face."""
         return [pieces.arc[pieces.of_face] for pieces in self.branches]
+
+    @property
+    def shown_arcs_of_faces(self) -> list[Ints]:
+        """For each tree, the arc (F,) whose part each face is shown in."""
+        return [pieces.shown[pieces.of_face] for pieces in self.branches]
+
+    @property
+    def exact(self) -> "PartTree":
+        """The same with each face shown in the part that has the greater half of it."""
+        return replace(self, branches=tuple(replace(pieces, shown=pieces.arc) for pieces in self.branches))
 
     @property
     def bodies(self) -> tuple[int, ...]:
@@ -107,11 +114,12 @@ class PartTree:
 
         Where parts of maxima and of minima overlap, the smaller one lies on top.
         """
-        body = self.trees[0].body[self.branches[0].arc]
+        body = self.trees[0].body[self.branches[0].shown]
         labels, size = body, np.full(len(body), np.inf)
         for tree, pieces, cut in zip(self.trees, self.branches, cuts, strict=True):
-            label = tree.spread(cut)[pieces.arc]
-            area = sum_by(label, pieces.area)[label]
+            part = tree.spread(cut)
+            label = part[pieces.shown]
+            area = sum_by(part[pieces.arc], pieces.area, 1 + int(part.max()))[label]
             is_on_top = (label > 0) & (label != body) & (area < (1 - ROUNDING) * size)
             labels, size = np.where(is_on_top, label, labels), np.where(is_on_top, area, size)
         return labels
@@ -126,13 +134,13 @@ class PartTree:
         default_level = self.hierarchy.default_level
         return [
             nested_cuts(tree, measures, shares, level=level, default_level=default_level)
-            for tree, measures, shares in zip(self.trees, self.measures, self.area_shares, strict=True)
+            for tree, measures, shares in zip(self.trees, self.measures, self._shares_of_shells, strict=True)
         ]
 
-
-def area_shares(trees: tuple[ArcTree, ...], branches: tuple[Branches, ...]) -> tuple[Floats, ...]:
-    """Return for each tree the share (A,) of each arc in the area of its shell."""
-    return tuple(_share_of_shell(tree, pieces) for tree, pieces in zip(trees, branches, strict=True))
+    @cached_property
+    def _shares_of_shells(self) -> list[Floats]:
+        """For each tree, the share (A,) of each arc in the area of its shell."""
+        return [_share_of_shell(tree, pieces) for tree, pieces in zip(self.trees, self.branches, strict=True)]
 
 
 def _share_of_shell(tree: ArcTree, pieces: Branches) -> Floats:

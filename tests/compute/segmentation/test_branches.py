@@ -47,7 +47,9 @@ def test_faces_that_are_not_analyzed_share_the_fate_of_the_face_they_lie_on():
 
 def pieces(area, borders, length):
     n = len(area)
-    return Branches(np.arange(n, dtype=np.int32), np.arange(n), np.array(area, float), np.ones(n, int), borders, length)
+    return Branches(
+        np.arange(n, dtype=np.int32), *2 * [np.arange(n)], np.array(area, float), np.ones(n, int), borders, length
+    )
 
 
 def test_a_stray_piece_joins_the_neighbour_it_shares_most_border_with():

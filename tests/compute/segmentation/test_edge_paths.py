@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
-from compute import MODES, analyze, label_branches
+from compute import MODES, analyze, label_branches, skeleton
 from compute.errors import MeshError
 from compute.surface.mesh import TriangleMesh, connected_pieces
 from tests.shapes import icosphere, joined, lathe, star
@@ -71,6 +72,39 @@ def test_labels_are_nested_as_the_arcs_are(trees):
 def test_few_faces_change_their_part(trees):
     before, after = (label_branches(trees[borders]).of_faces(trees[borders]) for borders in ("exact", "edges"))
     assert 0 < (before != after).mean() < 0.05
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_what_is_computed_from_parts_does_not_depend_on_how_they_are_shown(analyses, mode):
+    edges, exact = analyses["edges"], analyses["exact"]
+    labels = exact.segment(mode=mode).labels
+    np.testing.assert_array_equal(edges.exact_labels(edges.segment(mode=mode).labels), labels)
+    np.testing.assert_array_equal(edges.exact_labels(labels), labels)
+    np.testing.assert_array_equal(exact.exact_labels(labels), labels)
+    shown = skeleton(edges, labels=edges.segment(mode=mode).labels)
+    np.testing.assert_array_equal(shown.joints, skeleton(exact, labels=labels).joints)
+
+
+def test_a_part_that_was_put_between_a_border_and_its_level_set_stays(analyses, trees):
+    edges = analyses["edges"]
+    labels = edges.segment().labels.copy()
+    (pieces,) = trees["edges"].branches
+    face = np.flatnonzero((pieces.arc != pieces.shown)[pieces.of_face])[0]
+    labels[face] = own = labels.max() + 1
+    assert (edges.exact_labels(labels) == own).sum() == 1
+
+
+def test_borders_of_a_symmetric_shape_are_symmetric():
+    ball = icosphere(4)
+    arms = np.exp(-12 * np.linalg.norm(np.abs(ball.vertices[:, None]) - np.eye(3)[:2], axis=2) ** 2).sum(axis=1)
+    mesh = TriangleMesh(ball.vertices * (1 + 2 * arms)[:, None], ball.triangles)
+    centres = mesh.vertices[mesh.triangles].mean(axis=1)
+    labels = analyze(mesh).segment().labels
+    assert len(np.unique(labels)) == 5
+    for flip in ([-1, 1, 1], [1, -1, 1], [1, 1, -1]):
+        distance, image = cKDTree(centres).query(centres * flip)
+        assert distance.max() < 1e-9
+        assert len(np.unique(np.stack([labels, labels[image]]), axis=1).T) == 5
 
 
 def test_borders_follow_rings_of_edges():

@@ -147,7 +147,7 @@ def test_the_label_of_a_face_is_the_part_that_its_path_to_the_root_is_cut_off_at
     part_tree = analysis.part_tree()
     if len(part_tree.trees) > 1:
         pytest.skip("where two trees overlap the smaller part lies on top")
-    (tree,), (arcs,), (pieces,) = part_tree.trees, part_tree.arcs_of_faces, part_tree.branches
+    (tree,), (arcs,), (pieces,) = part_tree.trees, part_tree.shown_arcs_of_faces, part_tree.branches
     for level in range(analysis.hierarchy.n_levels):
         (cut,) = part_tree.cut_arcs(level, mode)
         first = [next((cut[each] for each in climbed(tree, arc) if cut[each]), 0) for arc in range(len(cut))]
