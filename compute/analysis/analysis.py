@@ -214,7 +214,9 @@ class Analysis:
 
     @cached_property
     def _ended_at_handles(self) -> "Analysis":
-        hierarchy, arcs, measures = measured_hierarchy(self.surface, self.field, self._topology, ends_at_handles=True)
+        hierarchy, arcs, measures = measured_hierarchy(
+            self.surface, self.field, self._topology, self._known_basis, ends_at_handles=True
+        )
         return dataclasses.replace(self, hierarchy=hierarchy, measures=measures, _arc_of_vertex=arcs)
 
     @told_if_full

@@ -90,7 +90,7 @@ def analyze(
     net = chosen.field.net
     topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
     progress(0.9, "Ordering the features")
-    hierarchy, arcs, measures = measured_hierarchy(surface, chosen.field, topology, ends_at_handles=False)
+    hierarchy, arcs, measures = measured_hierarchy(surface, chosen.field, topology, chosen.basis, ends_at_handles=False)
     progress(1.0, "Done")
     return Analysis(
         mesh=mesh,

@@ -27,7 +27,7 @@ def is_sound(part_tree: compute.PartTree) -> bool:
 
 def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
     n_arcs = tree.parent.size
-    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing)
+    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, tree.joint_part, tree.joint_closing)
     if not all(column.shape == (n_arcs,) for column in columns):
         return False
     is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
@@ -39,6 +39,8 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
         and lie_within(tree.saddle, compute.NO_SADDLE, np.inf)
         and lie_within(tree.closing, compute.ALWAYS, compute.NEVER + 1)
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
+        and bool(((tree.joint_part >= 1) & (tree.joint_part <= tree.part)).all())
+        and bool(((tree.joint_closing >= compute.ALWAYS) & (tree.joint_closing <= tree.closing)).all())
         and _are_sound_shells(tree)
     )
 

@@ -77,7 +77,7 @@ def test_each_level_cuts_off_what_closes_below_it(analysis):
     for tree in analysis.hierarchy.trees:
         for level in range(analysis.hierarchy.n_levels):
             is_cut = tree.is_cut(level)
-            assert not is_cut[tree.closing >= level].any()
+            assert not is_cut[tree.joint_closing >= level].any()
             for arc in np.flatnonzero(tree.is_feature(level)).tolist():
                 same_part = [other for other in range(arc) if tree.part[other] == tree.part[arc]]
                 assert not is_cut[same_part].any()
