@@ -35,12 +35,12 @@ def report_each(file: OpenFile, work: Callable[[bpy.types.Object], ObjectRow]) -
 
 def analysis_settings(options: argparse.Namespace) -> AnalysisSettings:
     """Return the settings of the analysis for the options that were given."""
-    shells = identifier(options.shells)
+    settings = AnalysisSettings(shells=identifier(options.shells), borders=identifier(options.borders))
     if options.field in compute.FIELDS:
-        return AnalysisSettings(identifier(options.field), shells=shells)
+        return replace(settings, field=identifier(options.field))
     if options.field.isdecimal():
-        return AnalysisSettings(EIGENFUNCTION, eigenfunction=int(options.field), shells=shells)
-    return AnalysisSettings(ATTRIBUTE, attribute=options.field, shells=shells)
+        return replace(settings, field=EIGENFUNCTION, eigenfunction=int(options.field))
+    return replace(settings, field=ATTRIBUTE, attribute=options.field)
 
 
 def row_of(

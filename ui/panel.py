@@ -62,6 +62,7 @@ class EIGENPARTS_PT_options(EigenpartsPanel, bpy.types.Panel):
         layout.prop(settings, "order")
         layout.prop(settings, "boundary")
         layout.prop(settings, "shells")
+        layout.prop(settings, "borders")
         layout.prop(settings, "use_modifiers")
 
 

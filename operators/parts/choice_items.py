@@ -39,6 +39,13 @@ SHELL_ITEMS = _items(
         "separate": ("Each by Itself", "Each that is no detail is divided on its own, as if it were alone"),
     },
 )
+BORDER_ITEMS = _items(
+    compute.BORDERS,
+    {
+        "edges": ("Edge Loops", "Parts end at short lines of edges, along edge loops where there are some nearby"),
+        "exact": ("Exact", "Each face belongs to the part that holds the greater half of it"),
+    },
+)
 ORDER_ITEMS = _items(
     compute.ORDERS,
     {

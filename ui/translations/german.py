@@ -76,6 +76,11 @@ GERMAN: dict[str, str] = {
     "Only the largest is analyzed; the others take the part of what they lie on": "Nur das größte wird analysiert; die anderen bekommen das Teil dessen, worauf sie liegen",
     "Each by Itself": "Jedes für sich",
     "Each that is no detail is divided on its own, as if it were alone": "Jedes, das keine Einzelheit ist, wird für sich zerlegt, als wäre es allein",
+    "Where parts end on whole faces": "Wo Teile auf ganzen Flächen enden",
+    "Edge Loops": "Kantenschleifen",
+    "Parts end at short lines of edges, along edge loops where there are some nearby": "Teile enden an kurzen Zügen von Kanten, entlang von Kantenschleifen, wo welche in der Nähe sind",
+    "Exact": "Genau",
+    "Each face belongs to the part that holds the greater half of it": "Jede Fläche gehört zu dem Teil, in dem ihre größere Hälfte liegt",
     "With Modifiers": "Mit Modifikatoren",
     "Analyze the posed shape as modifiers leave it; they must not change the faces": "Die Gestalt analysieren, wie Modifikatoren sie lassen; sie dürfen die Flächen nicht ändern",
     # Level and parts.

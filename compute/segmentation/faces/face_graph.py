@@ -22,12 +22,15 @@ class FaceGraph:
         Pairs of analyzed faces that share edges.
     length : (P,) float64
         Length of the edges they share.
+    shared : (P,) int64
+        The row of the surface's neighbouring triangles that each pair comes from.
     """
 
     area: Floats
     stands_for: Ints
     neighbours: Ints
     length: Floats
+    shared: Ints
 
 
 def face_graph(mesh: TriangleMesh, surface: Surface, face_of_triangle: Ints) -> FaceGraph:
@@ -55,4 +58,4 @@ def face_graph(mesh: TriangleMesh, surface: Surface, face_of_triangle: Ints) -> 
     neighbours = face_of_surface[edges.neighbours]
     apart = neighbours[:, 0] != neighbours[:, 1]
     tails, heads = surface.mesh.vertices[edges.vertices[edges.shared][apart].T]
-    return FaceGraph(area, stands_for, neighbours[apart], np.linalg.norm(heads - tails, axis=1))
+    return FaceGraph(area, stands_for, neighbours[apart], np.linalg.norm(heads - tails, axis=1), np.flatnonzero(apart))
