@@ -17,7 +17,7 @@ N_SAMPLES = 800
 LEAST_ALIKE = 0.05
 # Pairs of extrema that a symmetry is sought by, and how far from each other they are at least, like all distances below
 # in units of the root mean square of the coordinates.
-N_SEEDS, LEAST_APART = 16, 0.3
+N_SEEDS, LEAST_APART = 8, 0.3
 # The coordinates of twins differ by their signs: by less than this fraction of their length otherwise.
 MOST_UNLIKE = 0.8
 # A symmetry lands this near to the points of the surface; a human has 0.01 to 0.03, a kicking horse 0.05, a hand 0.2.
