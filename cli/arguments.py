@@ -144,6 +144,12 @@ def _add_division(command: argparse.ArgumentParser) -> None:
         default=compute.SHELLS[0],
         help="loose parts are analyzed with the largest where they prolong it (default), not at all, or each by itself",
     )
+    command.add_argument(
+        "--borders",
+        choices=compute.BORDERS,
+        default=compute.BORDERS[0],
+        help="parts end at short lines of edges (default), or each face goes where its greater half lies",
+    )
     choice = command.add_mutually_exclusive_group()
     choice.add_argument("--level", metavar="N", type=int, help="how many features to keep")
     choice.add_argument("--threshold", metavar="X", type=float, help="least height of a feature, as a fraction")

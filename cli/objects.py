@@ -35,12 +35,12 @@ def report_each(file: OpenFile, work: Callable[[bpy.types.Object], ObjectRow]) -
 
 def analysis_settings(options: argparse.Namespace) -> AnalysisSettings:
     """Return the settings of the analysis for the options that were given."""
-    shells = identifier(options.shells)
+    settings = AnalysisSettings(shells=identifier(options.shells), borders=identifier(options.borders))
     if options.field in compute.FIELDS:
-        return AnalysisSettings(identifier(options.field), shells=shells)
+        return replace(settings, field=identifier(options.field))
     if options.field.isdecimal():
-        return AnalysisSettings(EIGENFUNCTION, eigenfunction=int(options.field), shells=shells)
-    return AnalysisSettings(ATTRIBUTE, attribute=options.field, shells=shells)
+        return replace(settings, field=EIGENFUNCTION, eigenfunction=int(options.field))
+    return replace(settings, field=ATTRIBUTE, attribute=options.field)
 
 
 def row_of(
@@ -53,7 +53,7 @@ def row_of(
     parts = part_rows(mesh_of(obj), labels)
     for part in parts:
         part["area"] *= size_of(obj) ** 2
-    return {
+    row: ObjectRow = {
         "name": obj.name,
         "level": labels.level,
         "n_levels": result.stored.part_tree.hierarchy.n_levels,
@@ -61,6 +61,9 @@ def row_of(
         "seconds": round(result.seconds, 3),
         "warnings": list(messages.warnings),
     }
+    if result.elements is not None:
+        row["elements"] = result.elements.lower()
+    return row
 
 
 def _report(obj: bpy.types.Object, work: Callable[[bpy.types.Object], ObjectRow], repairs: list[str]) -> ObjectRow:

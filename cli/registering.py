@@ -57,7 +57,7 @@ class Register:
         if not options.source.is_file():
             raise Refusal(f"the reference {options.source}: there is no such file.")
         source = {"file": options.source.name, "digest": digest_of(options.source), "object": options.reference}
-        given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
+        given = {name: getattr(options, name) for name in ("object", "field", "shells", "borders", "mode")}
         chosen_parts = {"choice": choice_of(options), "mirrored": options.mirrored}
         return {"command": "register", **given, **chosen_parts, **settings_of_points(options.points), "source": source}
 

@@ -27,7 +27,7 @@ class Segment:
     def settings(self) -> Settings:
         """All that the results depend on besides the files."""
         options = self._options
-        given = {"object": options.object, "field": options.field, "shells": options.shells, "mode": options.mode}
+        given = {name: getattr(options, name) for name in ("object", "field", "shells", "borders", "mode")}
         return {"command": "segment", **given, "choice": choice_of(options)}
 
     def open_and_process(self, path: Path) -> tuple[OpenFile, list[ObjectRow]]:

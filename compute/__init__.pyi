@@ -5,6 +5,7 @@ from .analysis.analysis import Analysis as Analysis
 from .analysis.analyze import analyze as analyze
 from .analysis.readings import reeb_graph as reeb_graph
 from .analysis.readings import zero_level as zero_level
+from .choices import BORDERS as BORDERS
 from .choices import BOUNDARIES as BOUNDARIES
 from .choices import FIELDS as FIELDS
 from .choices import METHODS as METHODS
@@ -90,6 +91,7 @@ from .segmentation.edits.relief import Relief as Relief
 from .segmentation.edits.relief import relief_of as relief_of
 from .segmentation.faces.branches import Branches as Branches
 from .segmentation.faces.branches import connected_branches as connected_branches
+from .segmentation.faces.exact_labels import exact_labels as exact_labels
 from .segmentation.faces.face_graph import FaceGraph as FaceGraph
 from .segmentation.faces.face_graph import face_graph as face_graph
 from .segmentation.faces.part_tree import PartTree as PartTree

@@ -8,6 +8,9 @@ MODES = (NESTED, FEATURES)
 # What is done with a mesh of several shells: those that prolong the largest are bridged to it, only the largest is
 # analyzed, or each that is no detail by itself.
 SHELLS = ("bridged", "largest", "separate")
+# Where parts end on whole faces: at short lines of edges near the level sets, or where the greater half of a face says.
+EDGES, EXACT = "edges", "exact"
+BORDERS = (EDGES, EXACT)
 # Degrees of the finite elements; by the size of the mesh if "auto".
 ORDERS: tuple[str | int, ...] = ("auto", 1, 2, 3)
 # How functions behave at open edges: they meet them at a right angle, or are zero there.

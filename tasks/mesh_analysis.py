@@ -15,6 +15,9 @@ from . import recent_analyses
 from .mesh_shape import NO_STRETCH, MeshArrays, Stretch
 from .recent_analyses import EngineOptions
 
+# Elements by their order.
+ELEMENTS = {1: "Linear", 2: "Quadratic", 3: "Cubic"}
+
 
 @dataclass(frozen=True, eq=False)
 class AnalysisInput:
@@ -83,7 +86,9 @@ class AnalysisResult:
     stored : StoredAnalysis
     source : BorderSource
     description : str
-        The field, in words.
+        The field and its elements, in words.
+    elements : str, optional
+        One of ``ELEMENTS``; None if the field is of values of one's own.
     warnings : tuple of str
     seconds : float
         Time of the analysis.
@@ -98,6 +103,7 @@ class AnalysisResult:
     stored: StoredAnalysis
     source: BorderSource
     description: str
+    elements: str | None
     warnings: tuple[str, ...]
     seconds: float
     polygon_of_triangle: NDArray[np.int64]
@@ -122,10 +128,12 @@ def result_of(analysis: compute.Analysis, given: AnalysisInput, seconds: float) 
     part_tree = analysis.part_tree(given.arrays.polygon_of_triangle)
     heights = compute.vertex_heights(analysis.surface, analysis.field)
     is_function = isinstance(given.options["field"], int)
+    elements = None if analysis.order is None else ELEMENTS[analysis.order]
     return AnalysisResult(
         stored=StoredAnalysis(part_tree, given.options["shells"], given.arrays.stretch),
         source=BorderSource(analysis.profile(given.arrays.edges), heights),
-        description=_description(given.options["field"]),
+        description=", ".join(filter(None, (_description(given.options["field"]), elements))),
+        elements=elements,
         warnings=analysis.warnings,
         seconds=seconds,
         polygon_of_triangle=given.arrays.polygon_of_triangle,

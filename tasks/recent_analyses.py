@@ -23,6 +23,7 @@ class EngineOptions(TypedDict):
     order: int | str
     boundary: str
     shells: str
+    borders: str
 
 
 _recent: Recent[compute.Analysis] = Recent("analyses", RECENT_VERTICES)

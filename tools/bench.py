@@ -34,6 +34,7 @@ class Benchmark:
 
 BENCHMARKS = {
     "spectrum": Benchmark(quick="--sizes 5000 10000 --pairs 10 --repeats 1"),
+    "elements": Benchmark(quick=""),
     "topology": Benchmark("", "--largest 10000"),
     "segmentation": Benchmark(),
     "robustness": Benchmark(),

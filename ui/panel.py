@@ -62,6 +62,7 @@ class EIGENPARTS_PT_options(EigenpartsPanel, bpy.types.Panel):
         layout.prop(settings, "order")
         layout.prop(settings, "boundary")
         layout.prop(settings, "shells")
+        layout.prop(settings, "borders")
         layout.prop(settings, "use_modifiers")
 
 
@@ -159,9 +160,9 @@ def _origin_of_parts(state: MeshState) -> str:
         return translated("Parts of {name}").format(name=state.match.reference)
     if not state.is_readable:
         return translated(ABSENT)
-    return translated("{field}, levels 0 to {highest}").format(
-        field=translated(state.summary.description), highest=state.highest_level
-    )
+    # The field and its elements.
+    words = map(translated, state.summary.description.split(", "))
+    return translated("{field}, levels 0 to {highest}").format(field=", ".join(words), highest=state.highest_level)
 
 
 def _draw_outputs(column: bpy.types.UILayout, settings: MeshSettings) -> None:

@@ -36,6 +36,7 @@ OPTIONS = {
     "--object": "object",
     "--field": "field",
     "--shells": "shells",
+    "--borders": "borders",
     "--level": "level",
     "--threshold": "threshold",
     "--parts": "n_parts",

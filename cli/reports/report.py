@@ -40,6 +40,7 @@ class ObjectRow(TypedDict):
     error: NotRequired[str]
     seconds: NotRequired[float]
     warnings: NotRequired[list[str]]
+    elements: NotRequired[str]
     level: NotRequired[int]
     n_levels: NotRequired[int]
     parts: NotRequired[list[PartRow]]

@@ -1,7 +1,11 @@
 """The heavy step: from a mesh to everything that levels and parts are read from."""
 
+from functools import partial
+
 from numpy.typing import ArrayLike
 
+from ..choices import BORDERS, EDGES
+from ..errors import MeshError
 from ..fem.matching_basis import MatchingBasis
 from ..fields.field_choice import choose_field
 from ..fields.shell_fields import choose_fields
@@ -25,6 +29,7 @@ def analyze(
     order: int | str = "auto",
     boundary: str = "neumann",
     shells: str = "bridged",
+    borders: str = EDGES,
     progress: Progress | None = None,
 ) -> Analysis:
     """Compute a field on the mesh and the hierarchy of its features.
@@ -39,12 +44,16 @@ def analyze(
     n_functions : int, optional
         Eigenfunctions to compute; 30 for "diffusion", otherwise 12 or as many as needed.
     order : 1, 2, 3 or "auto"
-        Degree of the finite elements; "auto" takes cubic ones as long as they are cheap.
+        Degree of the finite elements; "auto" takes linear ones where they are accurate enough for the parts, otherwise
+        cubic ones as long as memory allows.
     boundary : "neumann" or "dirichlet"
         Whether the eigenfunctions are free or zero on the boundary of an open mesh.
     shells : "bridged", "largest" or "separate"
         Whether loose parts are bridged where they nearly touch, only the largest one is analyzed, or each that is no
         detail by itself, with parts of its own and what is left of it as a part of its own beside the body.
+    borders : "edges" or "exact"
+        Whether labels of whole faces end at short lines of edges near the level sets, or each face goes where its
+        greater half lies.
     progress : callable, optional
         ``progress(fraction, text)`` is called often; it may raise :class:`Cancelled`.
 
@@ -73,6 +82,8 @@ def analyze(
     """
     progress = rising(progress or silent)
     progress(0.0, "Checking the mesh")
+    if borders not in BORDERS:
+        raise MeshError(f'Borders are "edges" or "exact", not "{borders}".')
     surface = analyzed_surface(mesh, shells)
     choose = choose_fields if surface.is_apart else choose_field
     chosen = choose(surface, field, n_functions, order, boundary, section(progress, 0.02, 0.8))
@@ -80,7 +91,7 @@ def analyze(
     net = chosen.field.net
     topology = FieldTopology(links_of(net.triangles, len(net.positions)), net.positions, chosen.field.values)
     progress(0.9, "Ordering the features")
-    hierarchy, arcs, measures = measured_hierarchy(surface, chosen.field, topology, ends_at_handles=False)
+    hierarchy, arcs, measures = measured_hierarchy(surface, chosen.field, topology, chosen.basis, ends_at_handles=False)
     progress(1.0, "Done")
     return Analysis(
         mesh=mesh,
@@ -90,11 +101,12 @@ def analyze(
         measures=measures,
         warnings=(*_warnings_of(surface, hierarchy), *chosen.warnings),
         field_choice=field,
+        face_borders=borders,
         _topology=topology,
         _arc_of_vertex=arcs,
         _known_basis=chosen.basis,
         _matching=MatchingBasis(surface, chosen.basis),
-        _analyze=analyze,
+        _analyze=partial(analyze, borders=borders),
     )
 
 

@@ -13,8 +13,9 @@ from ..surface.cleaning import Surface, clean_surface
 from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
 from .assembly import mass_matrix
 from .degenerate import fixed_basis
-from .eigensolver import eigen_problem, lowest_eigenpairs
+from .eigensolver import EigenPairs, EigenProblem, eigen_problem, lowest_eigenpairs
 from .order_choice import require_functions
+from .shift_invert import WantedPairs
 from .space import FunctionSpace, function_space
 
 # In units of 1 / area; smaller eigenvalues are lost in round-off. A needle of proportion 1 to 1e6 has 1e-5.
@@ -143,18 +144,36 @@ def solve_on_surface(
     """
     progress = progress or silent
     progress(0.0, "Building the finite elements")
+    problem = posed_problem(surface, n_functions, order, boundary)
+    wanted = wanted_pairs(n_functions, boundary, largest_ratio)
+    return basis_of_pairs(surface, problem, wanted, lowest_eigenpairs(problem, wanted, progress), progress)
+
+
+def wanted_pairs(n_functions: int, boundary: str, largest_ratio: float) -> WantedPairs:
+    """Return which pairs have to be computed, the constant among them where the boundary is free."""
+    n_constant = 1 if boundary == "neumann" else 0
+    return WantedPairs(n_functions + n_constant, n_constant, largest_ratio)
+
+
+def posed_problem(surface: Surface, n_functions: int, order: int, boundary: str) -> EigenProblem:
+    """Return the eigenvalue problem on a surface, or refuse what cannot be solved; see `solve_eigenbasis`."""
     space = function_space(surface.mesh, order)
     is_free = _free_unknowns(space, boundary)
-    n_constant = 1 if boundary == "neumann" else 0
-    _check_count(n_functions, int(is_free.sum()) - n_constant)
+    _check_count(n_functions, int(is_free.sum()) - (1 if boundary == "neumann" else 0))
     require_functions(surface.mesh, order, n_functions)
-    problem = eigen_problem(space, is_free)
-    values, functions = lowest_eigenpairs(problem, n_functions + n_constant, n_constant, largest_ratio, progress)
-    values, functions = values[n_constant:], functions[:, n_constant:]
+    return eigen_problem(space, is_free)
+
+
+def basis_of_pairs(
+    surface: Surface, problem: EigenProblem, wanted: WantedPairs, pairs: EigenPairs, progress: Progress
+) -> Eigenbasis:
+    """Return the functions that were wanted, without the constant, in the units and the vertices of the input."""
+    space, area = problem.space, surface.mesh.areas.sum()
+    values, functions = pairs[0][wanted.n_constant :], pairs[1][:, wanted.n_constant :]
     if not values[0] > LEAST_VALUE:
         raise SpectrumError("The faces are collapsed or barely hang together; merge the vertices by distance first.")
-    kept = values <= largest_ratio * values[0]
-    mass, area = mass_matrix(space), surface.mesh.areas.sum()
+    kept = values <= wanted.largest_ratio * values[0]
+    mass = mass_matrix(space)
     functions = fixed_basis(values[kept], functions[:, kept], mass, space.nodes / np.sqrt(area))
     progress(1.0, "Eigenfunctions found")
     n_vertices = len(surface.vertex_of_input)
@@ -166,8 +185,8 @@ def solve_on_surface(
         mass=mass * area,
         nodes=space.nodes,
         elements=space.elements,
-        order=order,
-        boundary=boundary,
+        order=space.element.order,
+        boundary="neumann" if wanted.n_constant else "dirichlet",
         surface=surface,
     )
 

@@ -1,6 +1,6 @@
 """The lowest eigenpairs in a finite element space: linear elements first, and from there to the order asked for."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,14 @@ from ..surface.mesh import Bools, Floats, Ints
 from .assembly import Metric, assemble, element_mass, element_stiffness, metric
 from .block_lanczos import Pencil, smallest_eigenpairs
 from .nested_dissection import bisect_triangles, elimination_order
-from .shift_invert import SHIFT, arpack_eigenpairs, dense_eigenpairs, factored_as_ordered, factored_by_columns
+from .shift_invert import (
+    SHIFT,
+    WantedPairs,
+    arpack_eigenpairs,
+    dense_eigenpairs,
+    factored_as_ordered,
+    factored_by_columns,
+)
 from .space import FunctionSpace, function_space
 
 # Error of the eigenfunctions, in the sense of `compute.fem.block_lanczos`; eigenvalues have its square.
@@ -34,11 +41,11 @@ ROUNDING = 1e-9
 LEAST_WIDTH = 4
 SAME_VALUE = 1e-3
 
-# Linear functions beyond those wanted that are mixed into the start.
-N_EXTRA = 6
-
 # Eigenvalues of linear elements are too large; up to this much when they decide how many functions are needed.
 LINEAR_EXCESS = 1.1
+
+# (k,) eigenvalues in units of 1 / area, ascending, and (N, k) functions, orthonormal with the area as unit.
+EigenPairs = tuple[Floats, Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,19 +108,18 @@ def eigen_problem(space: FunctionSpace, is_free: Bools) -> EigenProblem:
 
 
 def lowest_eigenpairs(
-    problem: EigenProblem, n_pairs: int, n_constant: int, largest_ratio: float, progress: Progress
-) -> tuple[Floats, Floats]:
+    problem: EigenProblem, wanted: WantedPairs, progress: Progress, start: EigenPairs | None = None
+) -> EigenPairs:
     """Return the smallest eigenvalues and their functions.
 
     Parameters
     ----------
     problem : EigenProblem
-    n_pairs : int
-        Number of pairs, the constant counted.
-    n_constant : int
-        1 if the constant is among them, else 0.
-    largest_ratio : float
-        Pairs may be left out if their value exceeds the first that is not zero this many times.
+    wanted : WantedPairs
+        How many.
+    progress : Progress
+    start : EigenPairs, optional
+        Those of linear elements, by :func:`linear_eigenpairs`; computed where they are needed if None.
 
     Returns
     -------
@@ -128,18 +134,24 @@ def lowest_eigenpairs(
         If the iteration does not converge.
     """
     if problem.space.element.order == 1 or problem.is_free.sum() < BLOCK_UNKNOWNS:
-        return _plain_eigenpairs(problem, n_pairs, progress)
-    n_linear = n_pairs + N_EXTRA
-    if n_linear > DENSE_SHARE * problem.linear.is_free.sum():
-        return _plain_eigenpairs(problem, n_pairs, progress)
-    values, functions = _plain_eigenpairs(problem.linear, n_linear, section(progress, 0.0, 0.15))
+        return _plain_eigenpairs(problem, wanted, progress)
+    if wanted.at_most > DENSE_SHARE * problem.linear.is_free.sum():
+        return _plain_eigenpairs(problem, wanted, progress)
+    values, functions = start or linear_eigenpairs(problem.linear, wanted, section(progress, 0.0, 0.15))
     # One function more than needed shows that none is missing.
-    n_needed = int((values <= LINEAR_EXCESS * largest_ratio * values[n_constant]).sum()) + 1
-    n_pairs = min(n_pairs, n_needed)
-    close = slice(n_pairs + N_EXTRA)
-    width = max(LEAST_WIDTH, _multiplicity(values[close]) + 1)
-    start = functions[:, close] @ _mixture(functions[:, close].shape[1], width)
-    return _block_eigenpairs(problem, start, values[:n_pairs], section(progress, 0.15, 1.0))
+    n_pairs = min(_excessive(wanted).n_within(values) + 1, len(values))
+    width = max(LEAST_WIDTH, _multiplicity(values[:n_pairs]) + 1)
+    mixed = functions[:, :n_pairs] @ _mixture(n_pairs, width)
+    return _block_eigenpairs(problem, mixed, values[:n_pairs], section(progress, 0.15, 1.0))
+
+
+def linear_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> EigenPairs:
+    """Return the pairs of linear elements from which those of a higher order are found that are wanted."""
+    return _plain_eigenpairs(problem, _excessive(wanted), progress)
+
+
+def _excessive(wanted: WantedPairs) -> WantedPairs:
+    return replace(wanted, largest_ratio=LINEAR_EXCESS * wanted.largest_ratio)
 
 
 def _multiplicity(values: Floats) -> int:
@@ -152,23 +164,24 @@ def _mixture(n_functions: int, width: int) -> Floats:
     return np.random.default_rng(0).standard_normal((n_functions, width))
 
 
-def _plain_eigenpairs(problem: EigenProblem, n_pairs: int, progress: Progress) -> tuple[Floats, Floats]:
+def _plain_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> EigenPairs:
     """Return the lowest eigenpairs from ARPACK or, if there are few unknowns, from full matrices."""
     unknowns = problem.elimination_order
     stiffness, mass = problem.matrices(unknowns)
-    functions = np.zeros((problem.space.n_unknowns, n_pairs))
-    if len(unknowns) <= max(DENSE_UNKNOWNS, n_pairs / DENSE_SHARE):
-        values, functions[unknowns] = dense_eigenpairs(stiffness, mass, n_pairs)
-        return values, functions
-    progress(0.0, "Factoring")
-    factor = problem.factored(stiffness, mass)
-    values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, section(progress, 0.3, 1.0))
+    if len(unknowns) <= max(DENSE_UNKNOWNS, wanted.at_most / DENSE_SHARE):
+        values, of_unknowns = dense_eigenpairs(stiffness, mass, wanted.at_most)
+    else:
+        progress(0.0, "Factoring")
+        factor = problem.factored(stiffness, mass)
+        values, of_unknowns = arpack_eigenpairs(stiffness, mass, factor, wanted, section(progress, 0.3, 1.0))
+    functions = np.zeros((problem.space.n_unknowns, len(values)))
+    functions[unknowns] = of_unknowns
     return values, functions
 
 
 def _block_eigenpairs(
     problem: EigenProblem, linear_start: Floats, linear_values: Floats, progress: Progress
-) -> tuple[Floats, Floats]:
+) -> EigenPairs:
     """Return the lowest eigenpairs by block Lanczos iteration from linear functions on the same mesh."""
     n_pairs = len(linear_values)
     space, unknowns = problem.space, problem.elimination_order
@@ -186,5 +199,5 @@ def _block_eigenpairs(
     except (SpectrumError, np.linalg.LinAlgError):
         is_complete = False
     if not is_complete:
-        values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, n_pairs, progress)
+        values, functions[unknowns] = arpack_eigenpairs(stiffness, mass, factor, WantedPairs(n_pairs), progress)
     return values, functions

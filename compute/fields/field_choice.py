@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import FieldError
 from ..fem.eigenbasis import Eigenbasis, solve_on_surface
+from ..fem.elements_by_need import solve_by_need
 from ..fem.order_choice import OrderChoice, choose_order, require_order
 from ..progress import Progress
 from ..surface.cleaning import Surface
@@ -50,12 +51,11 @@ def choose_field(
 
 
 def resolved_order(order: int | str, surface: Surface) -> OrderChoice:
-    """Return the order that is asked for, or the one that a surface can afford."""
+    """Return the order that is asked for, or the best that a surface can afford."""
     if not isinstance(order, str):
         require_order(surface.mesh, order)
         return OrderChoice(order)
-    if order != "auto":
-        raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')
+    _check_order(order)
     return choose_order(surface.mesh)
 
 
@@ -72,24 +72,38 @@ def _diffusion(
 ) -> ChosenField:
     if name != DIFFUSION:
         raise FieldError(f'The field "{name}" does not exist; use "diffusion", a number or values of your own.')
-    chosen = resolved_order(order, surface)
     # Whoever asks for a number of functions gets them; otherwise those without weight are not computed.
     largest_ratio = LARGEST_RATIO if n_functions is None else np.inf
     n_functions = n_functions or min(DIFFUSION_FUNCTIONS, n_available(surface, boundary))
-    basis = solve_on_surface(
-        surface, n_functions, order=chosen.order, boundary=boundary, largest_ratio=largest_ratio, progress=progress
-    )
-    return ChosenField(diffusion_field(basis), basis, _warnings_of(chosen))
+    basis, warnings = _solve(surface, n_functions, order, boundary, largest_ratio, progress)
+    return ChosenField(diffusion_field(basis), basis, warnings)
 
 
 def _eigenfunction(
     surface: Surface, number: int, n_functions: int | None, order: int | str, boundary: str, progress: Progress
 ) -> ChosenField:
-    chosen = resolved_order(order, surface)
     n_functions = max(n_functions or min(DEFAULT_FUNCTIONS, n_available(surface, boundary)), number)
-    basis = solve_on_surface(surface, n_functions, order=chosen.order, boundary=boundary, progress=progress)
-    return ChosenField(eigenfunction_field(basis, number), basis, _warnings_of(chosen))
+    basis, warnings = _solve(surface, n_functions, order, boundary, np.inf, progress)
+    return ChosenField(eigenfunction_field(basis, number), basis, warnings)
 
 
-def _warnings_of(chosen: OrderChoice) -> tuple[str, ...]:
-    return () if chosen.warning is None else (chosen.warning,)
+def _solve(
+    surface: Surface, n_functions: int, order: int | str, boundary: str, largest_ratio: float, progress: Progress
+) -> tuple[Eigenbasis, tuple[str, ...]]:
+    """Return eigenfunctions of the order that is asked for or needed, and sentences for the user."""
+    if isinstance(order, str):
+        _check_order(order)
+        basis, warning = solve_by_need(
+            surface, n_functions, boundary=boundary, largest_ratio=largest_ratio, progress=progress
+        )
+        return basis, () if warning is None else (warning,)
+    require_order(surface.mesh, order)
+    basis = solve_on_surface(
+        surface, n_functions, order=order, boundary=boundary, largest_ratio=largest_ratio, progress=progress
+    )
+    return basis, ()
+
+
+def _check_order(order: str) -> None:
+    if order != "auto":
+        raise FieldError(f'The order is 1, 2, 3 or "auto", not "{order}".')

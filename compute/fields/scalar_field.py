@@ -15,6 +15,8 @@ from ..surface.mesh import LARGEST_NUMBER, Floats, Ints
 from ..surface.ties import evened
 
 DIFFUSION = FIELDS[0]
+# The name of a field of values of one's own.
+USER = "user"
 # Functions used by the diffusion field, at the most.
 DIFFUSION_FUNCTIONS = 30
 # Time of the diffusion in units of 1 / (first eigenvalue); 1 gave the best parts on the Princeton benchmark.
@@ -133,7 +135,7 @@ def user_field(surface: Surface, values: ArrayLike) -> ScalarField:
     numbers = np.zeros(n_vertices)
     numbers[mesh.used] = _even_field(of_surface)
     net = Net(mesh.vertices, mesh.triangles, np.arange(len(mesh.triangles)), mesh.areas)
-    return ScalarField(numbers, net, "user", True)
+    return ScalarField(numbers, net, USER, True)
 
 
 def _check_numbers(values: Floats) -> None:

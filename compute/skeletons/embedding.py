@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..analysis.analysis import Analysis
 from ..errors import LevelError
 from ..memory import require_memory, told_if_full
-from ..surface.mesh import Floats, Ints, checked_labels
+from ..surface.mesh import Floats, Ints
 from .joint_tree import join_limbs, pulled_inside, without_short_bones
 from .layout import BoneLayout, layout_of, level_with_tips, with_layout
 from .limb_plan import plan_limbs
@@ -150,7 +150,7 @@ def skeleton(
     require_memory(BYTES_PER_NODE * len(analysis.net.positions) + BYTES_PER_VERTEX * n_vertices, TOO_LARGE, n_vertices)
     if n_pieces < 1:
         raise LevelError(f"A long limb is divided into at least 1 bone, not {n_pieces}.")
-    labels = _labels_of_level(analysis, level, mode) if labels is None else checked_labels(analysis.mesh, labels)
+    labels = analysis.exact_labels(_labels_of_level(analysis, level, mode) if labels is None else labels)
     if layout is not None:
         level = analysis.hierarchy.default_level if level is None else level
         level = level_with_tips(analysis, labels, layout.tips, level)

@@ -12,7 +12,7 @@ from ..progress import Progress, silent
 from ..registration.dense.point_map import point_map
 from ..registration.eigenfunctions.matching import match
 from ..registration.eigenfunctions.spectral_shape import spectral_shape
-from ..surface.mesh import Floats, Ints, checked_labels
+from ..surface.mesh import Floats, Ints
 from ..surface.ties import first_largest
 from .embedding import Skeleton
 
@@ -86,7 +86,7 @@ def mirror_parts(analysis: Analysis, labels: NDArray[np.int32], *, progress: Pro
     >>> mirror_parts(analysis, sides).tolist()
     [1, 0]
     """
-    labels = checked_labels(analysis.mesh, labels)
+    labels = analysis.exact_labels(labels)
     progress(0.0, "Looking for symmetry")
     reflection = _reflected(analysis)
     if reflection is None:

@@ -145,7 +145,10 @@ def _weld(mesh: TriangleMesh) -> _Welded:
     corners = vertex_of_input[mesh.triangles]
     twin = _first_twin(corners, len(mesh.vertices))
     kept = np.flatnonzero(twin == np.arange(len(twin)))
-    return _Welded(TriangleMesh(mesh.vertices, corners[kept]), vertex_of_input, kept, twin)
+    # A mesh that stays as it is keeps what it knows of itself, such as its edges.
+    is_same = len(kept) == len(twin) and np.array_equal(corners, mesh.triangles)
+    welded = mesh if is_same else TriangleMesh(mesh.vertices, corners[kept])
+    return _Welded(welded, vertex_of_input, kept, twin)
 
 
 def _surface_of(mesh: TriangleMesh, welded: _Welded, is_chosen: Bools) -> Surface:
@@ -154,7 +157,9 @@ def _surface_of(mesh: TriangleMesh, welded: _Welded, is_chosen: Bools) -> Surfac
         raise MeshError(
             "The largest connected piece of the mesh is a single triangle; merge the vertices of the faces first."
         )
-    surface = TriangleMesh(mesh.vertices, welded.mesh.triangles[is_chosen])
+    surface = welded.mesh
+    if not is_chosen.all():
+        surface = TriangleMesh(mesh.vertices, welded.mesh.triangles[is_chosen])
     n_components = int(welded.mesh.component_of_triangle.max()) + 1
     nearest = _nearest_chosen(mesh, welded.twin, chosen)
     return Surface(
@@ -190,11 +195,14 @@ def _weld_open_doubles(mesh: TriangleMesh) -> Ints:
 
 def _contract_short_edges(mesh: TriangleMesh, vertex_of_input: Ints) -> Ints:
     """Weld the ends of edges without length: what hangs on collapsed faces alone would not hang together."""
-    corners = vertex_of_input[mesh.triangles]
-    sides = np.stack([corners.ravel(), np.roll(corners, -1, axis=1).ravel()])
-    tails, heads = mesh.vertices[sides]
+    ends = vertex_of_input[mesh.edges.vertices].T
     shortest = SHORTEST_EDGE * np.sqrt(mesh.areas.mean())
-    tails, heads = sides[:, np.abs(heads - tails).max(axis=1) <= shortest]
+    is_short = np.ones(ends.shape[1], dtype=bool)
+    # One coordinate at a time is several times as fast as rows of three.
+    for place in mesh.vertices.T:
+        tails, heads = place[ends]
+        is_short &= np.abs(heads - tails) <= shortest
+    tails, heads = ends[:, is_short]
     if not len(tails):
         return vertex_of_input
     n_vertices = len(vertex_of_input)

@@ -43,15 +43,16 @@ class Edges:
     @cached_property
     def neighbours(self) -> Ints:
         """(P, 2) pairs of triangles that share an edge, every pair of a non-manifold edge's fan in a row."""
-        by_edge = np.argsort(self.of_triangle.ravel(), kind="stable")
-        same = np.flatnonzero(np.diff(self.of_triangle.ravel()[by_edge]) == 0)
-        return np.stack([by_edge[same] // 3, by_edge[same + 1] // 3], axis=1)
+        triangle = _counting_order(self.of_triangle.ravel(), len(self.vertices)).astype(np.int64) // 3
+        is_last = np.zeros(len(triangle), dtype=bool)
+        is_last[np.cumsum(self.n_triangles) - 1] = True
+        same = np.flatnonzero(~is_last)
+        return np.stack([triangle[same], triangle[same + 1]], axis=1)
 
     @cached_property
     def shared(self) -> Ints:
         """(P,) the edge that each row of ``neighbours`` shares."""
-        by_edge = np.sort(self.of_triangle.ravel(), kind="stable")
-        return by_edge[:-1][np.diff(by_edge) == 0]
+        return np.repeat(np.arange(len(self.vertices)), self.n_triangles - 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +102,9 @@ class TriangleMesh:
         # Scaled by the longest side first, so that tiny and huge units neither underflow nor overflow.
         first, second = self._sides
         scale = max(np.abs(first).max(), np.abs(second).max(), np.finfo(float).tiny)
-        return 0.5 * np.linalg.norm(np.cross(first / scale, second / scale), axis=1) * scale**2
+        (ax, ay, az), (bx, by, bz) = first / scale, second / scale
+        x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        return 0.5 * np.sqrt(x * x + y * y + z * z) * scale**2
 
     @cached_property
     def edges(self) -> Edges:
@@ -121,7 +124,9 @@ class TriangleMesh:
 
     @property
     def _sides(self) -> tuple[Floats, Floats]:
-        a, b, c = self.vertices[self.triangles].swapaxes(0, 1)
+        """(3, T) the two sides of each triangle that begin at its first corner, one coordinate in a row."""
+        # Rows of numbers are several times as fast as many rows of three.
+        a, b, c = (np.ascontiguousarray(self.vertices.T)[:, corner] for corner in self.triangles.T)
         return b - a, c - a
 
 
@@ -157,7 +162,7 @@ def sorted_sides(triangles: Ints, n_vertices: int) -> tuple[Ints32, Ints32, Bool
     return order, np.stack([low, high]), is_new
 
 
-def _counting_order(keys: Ints32, n_keys: int) -> Ints32:
+def _counting_order(keys: Ints | Ints32, n_keys: int) -> Ints32:
     """Return the stable order of keys below ``n_keys``; a sparse transposition is a counting sort, so linear."""
     rows = np.arange(len(keys) + 1, dtype=np.int32)
     one_a_row = csr_array((np.empty(len(keys), dtype=np.int8), keys, rows), shape=(len(keys), n_keys))

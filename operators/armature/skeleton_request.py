@@ -19,6 +19,7 @@ from ..jobs.mesh_handle import MeshHandle
 from ..mesh_data import mesh_arrays
 from ..mesh_data.world_shape import size_of
 from ..mesh_state import bone_layout, part_sides
+from ..mesh_state.corrected_analysis import exact_labels
 from ..mesh_state.references import reference_of, state_of_reference
 from ..mesh_state.state import is_analyzed_for, read, remember
 from ..messages.sentences import Messages
@@ -59,7 +60,7 @@ class SkeletonRequest(SkeletonOptions, AnalysisRequest):
         state = read(mesh_of(obj))
         reference = state_of_reference(state)
         wanted = SkeletonInput(
-            labels=read_labels(mesh_of(obj)),
+            labels=exact_labels(state, read_labels(mesh_of(obj))),
             level=state.level,
             n_pieces=self.bones_in_limbs,
             poses=_other_poses(context),

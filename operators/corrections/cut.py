@@ -76,15 +76,29 @@ def insert_borders(obj: bpy.types.Object, state: MeshState) -> None:
     output_registry.refuse_foreign_results(state)
     level, mode = state.level, state.mode
     profile, crossings = corrected_analysis.crossings(state, state.border_source)
-    arcs = state.analysis.part_tree.arcs_of_faces
+    part_tree = state.analysis.part_tree
+    cuts = part_tree.cut_arcs(level, mode, compute.Corrections(state.corrections).branch_levels)
+    arcs, shown = part_tree.arcs_of_faces, _exact_at(part_tree, cuts)
     # From here on the faces are not what they were; a refusal before has not touched them.
     with faces_or_nothing(mesh):
         with normals_kept(mesh):
             faces = cut_mesh(mesh, crossings, np.stack(profile.arcs, axis=1).astype(np.int64), state.stretch)
-        for number, arc in enumerate(arcs):
-            arcs[number] = np.concatenate([arc, arc[faces.origin]])
-            arcs[number][faces.face] = faces.arcs[:, number]
-        _show(state, arcs, level, mode)
+        for of_faces in (arcs, shown):
+            for number, arc in enumerate(of_faces):
+                of_faces[number] = np.concatenate([arc, arc[faces.origin]])
+                of_faces[number][faces.face] = faces.arcs[:, number]
+        _show(state, arcs, shown, level, mode)
+
+
+def _exact_at(part_tree: compute.PartTree, cuts: list[NDArray[np.int64]]) -> list[NDArray[np.int64]]:
+    """Return the arcs that faces are shown in, their own where the parts of a level end elsewhere than they are cut."""
+    shown = []
+    for tree, cut, own, arc in zip(
+        part_tree.trees, cuts, part_tree.arcs_of_faces, part_tree.shown_arcs_of_faces, strict=True
+    ):
+        part = tree.spread(cut)
+        shown.append(np.where(part[arc] == part[own], arc, own))
+    return shown
 
 
 def move_borders(state: MeshState) -> None:
@@ -98,20 +112,23 @@ def move_borders(state: MeshState) -> None:
         paint.repaint(state, np.where(moved != labels, moved, state.painted))
         return
     cuts = analysis.part_tree.cut_arcs(level, mode)
-    arcs = analysis.part_tree.arcs_of_faces
-    for arc, cut in zip(arcs, cuts, strict=True):
+    arcs, shown = analysis.part_tree.arcs_of_faces, analysis.part_tree.shown_arcs_of_faces
+    for arc, cut in zip(shown, cuts, strict=True):
         # The last arc of a tree is a root, which is body at every level.
         arc_of_part = np.full(int(moved.max(initial=0)) + 1, len(cut) - 1)
         ends = np.flatnonzero((cut > 0) & (cut < len(arc_of_part)))
         arc_of_part[cut[ends]] = ends
         arc[moved != labels] = arc_of_part[moved[moved != labels]]
-    _show(state, arcs, level, mode)
+    _show(state, arcs, shown, level, mode)
 
 
-def _show(state: MeshState, arcs: list[NDArray[np.int64]], level: int, mode: str) -> None:
-    """Store new arcs of the faces, and divide the mesh as before."""
+def _show(
+    state: MeshState, arcs: list[NDArray[np.int64]], shown: list[NDArray[np.int64]], level: int, mode: str
+) -> None:
+    """Store new arcs of the faces, their own and those they are shown in, and divide the mesh as before."""
     faces = AnalyzedFaces(state.mesh, state.shells, state.stretch)
-    branches = compute.connected_branches([arc[faces.graph.stands_for] for arc in arcs], faces.graph)
+    own, of_parts = ([arc[faces.graph.stands_for] for arc in each] for each in (arcs, shown))
+    branches = compute.connected_branches(own, faces.graph, of_parts)
     analysis_writer.store_branches(state.mesh, branches, faces.place_of_vertex)
     part_writer.segment_mesh(state.mesh, level=level, mode=mode)
 

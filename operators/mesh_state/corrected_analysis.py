@@ -45,6 +45,21 @@ def with_items(
     return replace(analysis, part_tree=part_tree, corrections=corrections)
 
 
+def exact_labels(state: MeshState, labels: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return the labels (F,) that a mesh shows with each face in the part that has the greater half of it.
+
+    What else than an analysis has put there stays.
+    """
+    if state.match is not None:
+        return compute.exact_labels(labels, state.analysis.part_tree, state.faces.graph)
+    analysis = corrected(state)
+    shown, exact = (
+        compute.label_branches(tree, level=state.level, mode=state.mode, corrections=analysis.corrections)
+        for tree in (analysis.part_tree, analysis.part_tree.exact)
+    )
+    return np.where(labels == shown.of_faces(analysis.part_tree), exact.of_faces(analysis.part_tree), labels)
+
+
 def crossings(state: MeshState, source: BorderSource) -> tuple[compute.EdgeProfile, compute.Crossings]:
     """Return where the borders of the parts that a mesh shows cross its edges, and the arcs these refer to."""
     whole, analysis = state.analysis.part_tree, corrected(state)

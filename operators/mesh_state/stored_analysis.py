@@ -122,9 +122,14 @@ def unpacked_analysis(mesh: bpy.types.Mesh, group: Any, shells: str, stretch: St
 def unpacked_branches(group: Any, of_faces: list[NDArray[np.int32]]) -> tuple[compute.Branches, ...]:
     """Return the branches in a group, with those of the faces for each tree."""
     return tuple(
-        compute.Branches(of_face=of_face, **unpacked(group[PIECES_OF_TREE.format(i)], compute.Branches))
+        compute.Branches(of_face=of_face, **unpacked(_with_shown(group[PIECES_OF_TREE.format(i)]), compute.Branches))
         for i, of_face in enumerate(of_faces)
     )
+
+
+def _with_shown(pieces: Any) -> Any:
+    """Return stored branches with the arcs that they are shown in; in 0.1.0 these were their own."""
+    return pieces if "shown" in pieces else {**pieces, "shown": pieces["arc"]}
 
 
 def unpacked_source(mesh: bpy.types.Mesh, group: Any, part_tree: compute.PartTree) -> BorderSource:
@@ -172,13 +177,19 @@ def vertex_heights(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
 def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
     n_trees = 2 if TREE.format(1) in group else 1
     tables = [group[TREE.format(i)] for i in range(n_trees)]
-    trees = tuple(compute.ArcTree(**unpacked(table, compute.ArcTree)) for table in tables)
+    trees = tuple(compute.ArcTree(**unpacked(_with_twins(table), compute.ArcTree)) for table in tables)
     return compute.PartTree(
         hierarchy=compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees),
         measures=tuple(compute.ArcMeasures(**unpacked(table, compute.ArcMeasures)) for table in tables),
         closing_heights=tuple(_unpacked_closing_heights(group, i, tree) for i, tree in enumerate(trees)),
         branches=unpacked_branches(group, [read_own_integers(mesh, attribute) for attribute in BRANCHES[:n_trees]]),
     )
+
+
+def _with_twins(table: Any) -> Any:
+    """Return a stored tree with what twins have in common; in 0.1.0 there were none."""
+    own = {"joint_part": "part", "joint_closing": "closing"}
+    return {**table, **{joint: table[name] for joint, name in own.items() if joint not in table}}
 
 
 def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> NDArray[np.float64]:

@@ -27,7 +27,7 @@ def is_sound(part_tree: compute.PartTree) -> bool:
 
 def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
     n_arcs = tree.parent.size
-    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing)
+    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, tree.joint_part, tree.joint_closing)
     if not all(column.shape == (n_arcs,) for column in columns):
         return False
     is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
@@ -39,6 +39,8 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
         and lie_within(tree.saddle, compute.NO_SADDLE, np.inf)
         and lie_within(tree.closing, compute.ALWAYS, compute.NEVER + 1)
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
+        and bool(((tree.joint_part >= 1) & (tree.joint_part <= tree.part)).all())
+        and bool(((tree.joint_closing >= compute.ALWAYS) & (tree.joint_closing <= tree.closing)).all())
         and _are_sound_shells(tree)
     )
 
@@ -66,12 +68,13 @@ def are_sound_branches(branches: compute.Branches, n_arcs: int) -> bool:
     """Whether the tables of branches fit each other and a tree."""
     n_branches = branches.arc.size
     return (
-        branches.area.shape == branches.n_faces.shape == branches.arc.shape == (n_branches,)
+        branches.area.shape == branches.n_faces.shape == branches.arc.shape == branches.shown.shape == (n_branches,)
         and branches.borders.shape == (branches.border_length.size, 2)
         and branches.border_length.ndim == 1
         and lie_within(branches.n_faces, 0, len(branches.of_face) + 1)
         and lie_within(branches.area, 0, np.inf)
         and lie_within(branches.arc, 0, n_arcs)
+        and lie_within(branches.shown, 0, n_arcs)
         and lie_within(branches.borders, 0, n_branches)
         and lie_within(branches.of_face, 0, n_branches)
     )

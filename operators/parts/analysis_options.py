@@ -5,7 +5,7 @@ from bpy.props import PointerProperty
 
 from ..blender.registered_settings import SETTINGS
 from ..blender.typed_properties import BoolProperty, EnumProperty, IntProperty, StringProperty, TypedProperties
-from .choice_items import BOUNDARY_ITEMS, FIELD_ITEMS, ORDER_ITEMS, SHELL_ITEMS
+from .choice_items import BORDER_ITEMS, BOUNDARY_ITEMS, FIELD_ITEMS, ORDER_ITEMS, SHELL_ITEMS
 
 
 class AnalysisOptions(TypedProperties):
@@ -36,6 +36,11 @@ class AnalysisOptions(TypedProperties):
         name="Loose Parts",
         description="What is done with a mesh of several loose parts",
         items=SHELL_ITEMS,
+    )
+    borders: str = EnumProperty(
+        name="Borders",
+        description="Where parts end on whole faces",
+        items=BORDER_ITEMS,
     )
     use_modifiers: bool = BoolProperty(
         name="With Modifiers",

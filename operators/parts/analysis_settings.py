@@ -29,8 +29,8 @@ class AnalysisSettings:
         Number of the eigenfunction, from 1.
     attribute : str
         Name of the attribute with the values of the field.
-    order, boundary, shells : str
-        Each one of ``ORDER_ITEMS``, ``BOUNDARY_ITEMS`` and ``SHELL_ITEMS``.
+    order, boundary, shells, borders : str
+        Each one of ``ORDER_ITEMS``, ``BOUNDARY_ITEMS``, ``SHELL_ITEMS`` and ``BORDER_ITEMS``.
     use_modifiers : bool
         Whether the mesh is read as its modifiers leave it.
     """
@@ -41,6 +41,7 @@ class AnalysisSettings:
     order: str = identifier(compute.ORDERS[0])
     boundary: str = identifier(compute.BOUNDARIES[0])
     shells: str = identifier(compute.SHELLS[0])
+    borders: str = identifier(compute.BORDERS[0])
     use_modifiers: bool = False
 
 
@@ -61,6 +62,7 @@ def engine_options(mesh: bpy.types.Mesh, settings: AnalysisSettings) -> EngineOp
         "order": word(compute.ORDERS, settings.order),
         "boundary": word(compute.BOUNDARIES, settings.boundary),
         "shells": word(compute.SHELLS, settings.shells),
+        "borders": word(compute.BORDERS, settings.borders),
     }
 
 

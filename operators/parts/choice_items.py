@@ -39,10 +39,17 @@ SHELL_ITEMS = _items(
         "separate": ("Each by Itself", "Each that is no detail is divided on its own, as if it were alone"),
     },
 )
+BORDER_ITEMS = _items(
+    compute.BORDERS,
+    {
+        "edges": ("Edge Loops", "Parts end at short lines of edges, along edge loops where there are some nearby"),
+        "exact": ("Exact", "Each face belongs to the part that holds the greater half of it"),
+    },
+)
 ORDER_ITEMS = _items(
     compute.ORDERS,
     {
-        "auto": ("Automatic", "Cubic as long as it is cheap, then quadratic, then linear"),
+        "auto": ("Automatic", "Linear where that gives the same parts, otherwise cubic while memory allows"),
         1: ("Linear", "Fast, for large meshes"),
         2: ("Quadratic", "Between the two"),
         3: ("Cubic", "Most accurate"),

@@ -22,6 +22,8 @@ from ..messages.user_errors import can_use_active_mesh
 from ..parts.analysis_settings import SETTINGS, AnalysisSettings
 from .registration_operator import RegistrationHandles, RegistrationOperator
 
+# Options that a registration of 0.1.0 does not know, as it was made.
+NOT_IN_0_1_0 = {"borders": AnalysisSettings().borders}
 DAMAGED = "The registration stored on this mesh is damaged; register the selected meshes again."
 
 
@@ -43,9 +45,10 @@ class RepeatedRegistration(TypedProperties, RegistrationOperator):
         reference = registration.reference or _mesh_object(context, match.reference)
         if reference.name not in present(context.view_layer).objects:
             raise Refusal(f'"{reference.name}", whose parts it has, is not in this view layer any more.')
-        if not _are_settings(match.settings, analysis_settings(context).bl_rna.properties):
+        stored = NOT_IN_0_1_0 | match.settings
+        if not _are_settings(stored, analysis_settings(context).bl_rna.properties):
             raise Refusal(DAMAGED)
-        settings = AnalysisSettings(**{name: match.settings[name] for name in SETTINGS})
+        settings = AnalysisSettings(**{name: stored[name] for name in SETTINGS})
         return self.start(context, reference, [obj], self.match_options(match), settings)
 
     def match_options(self, match: registration_record.Match) -> MatchOptions:

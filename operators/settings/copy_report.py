@@ -62,7 +62,8 @@ def _version_of_scipy() -> str:
 
 def _facts_of_scene(context: bpy.types.Context) -> list[str]:
     settings = analysis_settings(context)
-    chosen = [f"{name}={getattr(settings, name)}" for name in ("field", "eigenfunction", "order", "boundary", "shells")]
+    names = ("field", "eigenfunction", "order", "boundary", "shells", "borders")
+    chosen = [f"{name}={getattr(settings, name)}" for name in names]
     return [f"Settings: {', '.join(chosen)}, use_modifiers={settings.use_modifiers}"]
 
 

@@ -102,6 +102,14 @@ def values_of(mesh, name, components=1, dtype=np.int32, property_name="value"):
     return values if components == 1 else values.reshape(-1, components)
 
 
+def exact_labels_of(mesh):
+    """Return the part that has the greater half of each face, wherever its borders are shown."""
+    from eigenparts.operators.mesh_state.corrected_analysis import exact_labels
+    from eigenparts.operators.mesh_state.state import read
+
+    return exact_labels(read(mesh), values_of(mesh, "part"))
+
+
 def everything_on(mesh):
     """Return all that a user could miss on a mesh: attributes with their bytes, properties, active colour."""
     sizes = {"INT": ("value", 1, np.int32), "FLOAT": ("value", 1, np.float32), "FLOAT_COLOR": ("color", 4, np.float32)}

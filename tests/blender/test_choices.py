@@ -29,7 +29,13 @@ def test_the_words_load_nothing():
 
 
 @pytest.mark.parametrize(
-    ("name", "words"), [("order", compute.ORDERS), ("boundary", compute.BOUNDARIES), ("shells", compute.SHELLS)]
+    ("name", "words"),
+    [
+        ("order", compute.ORDERS),
+        ("boundary", compute.BOUNDARIES),
+        ("shells", compute.SHELLS),
+        ("borders", compute.BORDERS),
+    ],
 )
 def test_the_lists_of_an_analysis_are_the_words_of_the_engine(extension, name, words):
     settings = bpy.context.scene.eigenparts
@@ -50,11 +56,11 @@ def test_the_fields_of_the_engine_come_first(extension):
     assert names == [*identifiers(compute.FIELDS), "EIGENFUNCTION", "ATTRIBUTE"]
 
 
-@pytest.mark.parametrize("option", ["mode", "shells"])
+@pytest.mark.parametrize("option", ["mode", "shells", "borders"])
 def test_the_command_line_takes_the_words_of_the_engine(extension, option, capsys):
     from eigenparts.cli import arguments
 
-    for word in {"mode": compute.MODES, "shells": compute.SHELLS}[option]:
+    for word in {"mode": compute.MODES, "shells": compute.SHELLS, "borders": compute.BORDERS}[option]:
         assert getattr(arguments.parse(["segment", "a.obj", f"--{option}", word]), option) == word
     with pytest.raises(SystemExit):
         arguments.parse(["segment", "a.obj", f"--{option}", "other"])

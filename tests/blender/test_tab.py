@@ -79,6 +79,13 @@ def test_progress_stands_in_one_panel_in_place_of_its_button(tab, job):
     assert [panel for panel, labels in rows.items() if labels] == [tab.PANEL_OF_JOB.get(status.job, tab.ANALYZE_PANEL)]
 
 
+@pytest.mark.parametrize(("order", "elements"), [("1", "Linear"), ("2", "Quadratic"), ("AUTO", "Cubic")])
+def test_the_panel_says_which_elements_were_taken(order, elements):
+    small_star("star")
+    bpy.ops.eigenparts.analyze(order=order)
+    assert [text for text in draw_panels() if text.startswith(f"Diffusion, {elements}, levels 0 to ")]
+
+
 def test_the_shares_in_the_list_add_up():
     small_star("star")
     bpy.ops.eigenparts.analyze(order="1")

@@ -80,7 +80,7 @@ def test_the_texts_are_found(extension):
         "Analyze",  # operator
         "Find what protrudes on the active mesh, such as limbs, heads and fingers, and divide it into parts",
         "Default Level",  # drawn
-        "Cubic as long as it is cheap, then quadratic, then linear",  # item of a list
+        "Linear where that gives the same parts, otherwise cubic while memory allows",  # item of a list
         "Draw the borders between parts",  # switch
         "Parts of {name}",  # translated before it is filled
     } <= texts_of_window(extension)

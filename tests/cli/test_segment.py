@@ -63,6 +63,17 @@ def test_each_loose_part_is_divided_by_itself_if_wanted(run, tmp_path):
     assert n_parts == {"bridged": 6, "largest": 6, "separate": 6 + 4}
 
 
+def test_borders_are_along_edges_or_exact(run, tmp_path):
+    write_off(star(5, 3), tmp_path / "star.off")
+    faces = {}
+    for borders in ("edges", "exact"):
+        _, report, _ = run("segment", tmp_path / "star.off", "--borders", borders, "--json")
+        faces[borders] = [part["faces"] for part in report["files"][0]["objects"][0]["parts"]]
+        assert report["files"][0]["settings"]["borders"] == borders
+    assert len(faces["edges"]) == len(faces["exact"]) == 6
+    assert faces["edges"] != faces["exact"]
+
+
 def test_a_blend_file_keeps_what_the_panel_needs(run, tmp_path):
     add_object(star(5, 3))
     EXPORTERS[".blend"](str(tmp_path / "star.blend"))
@@ -88,6 +99,7 @@ def test_the_report_adds_up(run, star_off, tmp_path):
     row = report["files"][0]["objects"][0]
     mesh = star(5, 3)
     assert (code, report["version"]) == (0, 1)
+    assert row["elements"] == "cubic"
     assert len(row["parts"]) == 4
     assert sum(part["faces"] for part in row["parts"]) == len(mesh.triangles)
     assert sum(part["area"] for part in row["parts"]) == pytest.approx(mesh.areas.sum(), rel=1e-5)

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from compute.fem import assembly, eigensolver, order_choice
+from compute.fem import assembly, eigensolver, elements_by_need, order_choice
 from compute.fields import scalar_field, shell_fields
 from compute.registration.dense import by_shape, confidence, deformation_graph, nonrigid_alignment, point_map, transfer
 from compute.registration.eigenfunctions import confidence as map_confidence
@@ -65,6 +65,8 @@ DECISIONS = {
     "cubic_elements": {
         "memory": f"below {order_choice.MEMORY_BUDGET / 1e9:g} GB",
         "unknown": f"({order_choice.BYTES_PER_UNKNOWN / 1000:g} kB an unknown)",
+        "error of linear elements": f"eigenvalues is at most {elements_by_need.LARGEST_EXCESS:g}",
+        "least vertices": f"from {elements_by_need.LEAST_VERTICES} vertices on",
     },
     "own_elimination_order": {"width": f"block Lanczos, {IN_WORDS[eigensolver.LEAST_WIDTH]} functions at a time"},
     "diffusion_field": {

@@ -143,6 +143,7 @@ MAKERS: dict[str, Maker] = {
     "solve_eigenbasis.order": lambda case: case.usual(1, 2, 3, wrong=(0, 4)),
     "boundary": lambda case: case.usual(case.boundary, wrong=("open",)),
     "shells": lambda case: case.usual(case.shells, wrong=("all",)),
+    "borders": lambda case: case.usual("edges", "exact", wrong=("smooth",)),
     "component": lambda case: case.usual(None, 0, wrong=(1, -1, 99)),
     "progress": lambda case: lambda fraction, text: None,
     "level": lambda case: case.level,

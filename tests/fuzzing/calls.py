@@ -24,7 +24,8 @@ ALSO = (
 # Functions that take what other functions of the engine returned, and nothing of the user's.
 INNER = {
     *("agreed_matchings", "analyzed_surface", "carried", "carried_painting", "colour_places", "connected_branches"),
-    *("corrected_crossings", "cross_edges", "divisible", "drawn_borders", "face_graph", "first_own_part", "hill_of"),
+    *("corrected_crossings", "cross_edges", "divisible", "drawn_borders", "exact_labels", "face_graph"),
+    *("first_own_part", "hill_of"),
     *("joined_parts", "label_branches", "label_mapped", "lie_together", "majority_of_polygons", "map_to_reference"),
     *("match_divisible", "match_members", "match_shape_diagrams", "mixed", "naming", "needs_faces", "number_behind"),
     *("places_at_all_levels", "point_warnings", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),

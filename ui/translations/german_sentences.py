@@ -20,6 +20,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "The largest connected piece of the mesh is a single triangle; merge the vertices of the faces first.": "Das größte zusammenhängende Stück des Netzes ist ein einziges Dreieck; zuerst die Punkte der Flächen verschmelzen.",
     "Component {} does not exist; the mesh has components 0 to {}.": "Komponente {} gibt es nicht; das Netz hat die Komponenten 0 bis {}.",
     'Loose parts are "bridged", the "largest" is taken or they are "separate", not "{}".': "Lose Teile sind „bridged“, „largest“ oder „separate“, nicht „{}“.",
+    'Borders are "edges" or "exact", not "{}".': "Grenzen sind „edges“ oder „exact“, nicht „{}“.",
     "The faces are collapsed or barely hang together; merge the vertices by distance first.": "Die Flächen sind zusammengefallen oder hängen kaum zusammen; zuerst Punkte nach Abstand verschmelzen.",
     "The faces collapse into points or lines; merge the vertices by distance.": "Die Flächen fallen zu Punkten oder Linien zusammen; Punkte nach Abstand verschmelzen.",
     "The eigenfunctions did not converge; look for slivers, or remesh the surface.": "Die Eigenfunktionen konvergierten nicht; nach Splitterdreiecken suchen oder die Fläche neu vernetzen.",

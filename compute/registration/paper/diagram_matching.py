@@ -18,10 +18,11 @@ from ...msc.links import links_of
 from ...msc.merge_tree import merge_tree
 from ...msc.ranked_net import ranked_net
 from ...segmentation.parts.part_labels import BODY, Segmentation
+from ...surface.assignment import cheapest_assignment
 from ...surface.mesh import Bools, Floats, Ints
 from ...surface.ties import ROUNDING, evened
 from ..eigenfunctions.spectral_shape import SpectralShape
-from ..eigenfunctions.zoomout import assigned, cheapest_assignment
+from ..eigenfunctions.zoomout import assigned
 
 # Functions that are compared, and how far a function may move (Reuter 2009, sections 4.6 and 4.7).
 DIAGRAM_FUNCTIONS = 6

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...choices import FEATURES
+from ...segmentation.faces.exact_labels import exact_labels
 from ...segmentation.hierarchy.arc_tree import ArcTree
 from ...segmentation.hierarchy.levels import Hierarchy
 from ...segmentation.parts.part_labels import BODY, Parts
@@ -29,7 +30,8 @@ class ReferenceParts:
     level : int
         Of the reference.
     shares : (n, P) sparse
-        Share of the area around each point of the reference that each part covers, with all that grows out of it.
+        Share of the area around each point of the reference that each part covers, with all that grows out of it; by
+        exact labels, so that partners do not depend on where borders are shown.
     is_inside : (P, P) bool
         Whether the first part grows out of the second, directly or not.
     least_persistence : float
@@ -48,7 +50,10 @@ def reference_parts(labels: Ints, parts: Parts, level: int, reference: Divisible
     """Return the parts of a division of the reference's faces in the form that they are looked for on other shapes."""
     given = given_parts(labels, parts, reference)
     is_inside = _nesting(given.id, given.parent)
-    whole = given.shares[:, 1:] @ (is_inside | np.eye(len(given.id), dtype=bool)).astype(float)
+    exact = exact_labels(labels.astype(np.int32), reference.part_tree, reference.graph)
+    whole = given_parts(exact.astype(np.int64), parts, reference).shares[:, 1:] @ (
+        is_inside | np.eye(len(given.id), dtype=bool)
+    ).astype(float)
     least = _least_persistence(reference.part_tree.hierarchy, level)
     return ReferenceParts(
         given=given,

@@ -88,7 +88,10 @@ def tracked_parts(parts: Iterable[int], old: PartTree, new: PartTree, area: Floa
     mode : "nested" or "features"
         The mode in which levels are read.
     """
-    places = {number: place for place, (number, _) in _candidates(old, mode).items()}
+    places: dict[int, tuple[int, int]] = {}
+    for place, (number, _) in _candidates(old, mode).items():
+        # A number is that of the place where the default level has it, though others may have it elsewhere.
+        places.setdefault(number, place)
     candidates = _candidates(new, mode)
     shift = first_own_part(new.trees[0]) - first_own_part(old.trees[0])
     tracked = {0: 0}

@@ -17,12 +17,16 @@ from .face_graph import FaceGraph
 class Branches:
     """The faces of every arc of a tree, in connected pieces; B branches.
 
+    The borders of parts that are shown may run along edges near the level sets. All else is read from the arc itself.
+
     Attributes
     ----------
     of_face : (F,) int32
         The branch of each face.
     arc : (B,) int64
         The arc of the tree that each branch is a piece of.
+    shown : (B,) int64
+        The arc whose part each branch is shown in.
     area : (B,) float64
         In the mesh's unit of length, squared.
     n_faces : (B,) int64
@@ -33,6 +37,7 @@ class Branches:
 
     of_face: NDArray[np.int32]
     arc: Ints
+    shown: Ints
     area: Floats
     n_faces: Ints
     borders: Ints
@@ -65,7 +70,7 @@ def build_branches(parents: list[Ints], shares: list[ArcAreas], graph: FaceGraph
     return connected_branches(arcs, graph)
 
 
-def connected_branches(arcs: list[Ints], graph: FaceGraph) -> tuple[Branches, ...]:
+def connected_branches(arcs: list[Ints], graph: FaceGraph, shown: list[Ints] | None = None) -> tuple[Branches, ...]:
     """Divide faces into connected branches, each on one arc of every tree.
 
     Parameters
@@ -73,14 +78,20 @@ def connected_branches(arcs: list[Ints], graph: FaceGraph) -> tuple[Branches, ..
     arcs : list of (F,) int64
         For each tree, the arc of each face.
     graph : FaceGraph
+    shown : list of (F,) int64, optional
+        For each tree, the arc whose part each face is shown in; the same if None.
     """
+    shown = shown or arcs
     left, right = graph.neighbours.T
-    same = np.logical_and.reduce([arc[left] == arc[right] for arc in arcs])
+    same = np.logical_and.reduce([arc[left] == arc[right] for arc in (*arcs, *shown)])
     _, first, piece = np.unique(_pieces(graph, same)[graph.stands_for], return_index=True, return_inverse=True)
     piece = piece.reshape(-1)
     borders, length = _sum_pairs(piece[graph.neighbours[~same]], graph.length[~same], len(first))
     of_face, area, count = piece.astype(np.int32), sum_by(piece, graph.area), np.bincount(piece)
-    return tuple(Branches(of_face, arc[first], area, count, borders, length) for arc in arcs)
+    return tuple(
+        Branches(of_face, arc[first], of_parts[first], area, count, borders, length)
+        for arc, of_parts in zip(arcs, shown, strict=True)
+    )
 
 
 def divided_branches(branches: tuple[Branches, ...], code: Ints, graph: FaceGraph) -> tuple[tuple[Branches, ...], Ints]:
@@ -108,8 +119,9 @@ def divided_branches(branches: tuple[Branches, ...], code: Ints, graph: FaceGrap
     apart = piece[left] != piece[right]
     borders, length = _sum_pairs(piece[graph.neighbours[apart]], graph.length[apart], len(face))
     area, count = sum_by(piece, graph.area), np.bincount(piece)
+    of_face, branch = piece.astype(np.int32), branches[0].of_face[face]
     divided = tuple(
-        Branches(piece.astype(np.int32), old.arc[old.of_face[face]], area, count, borders, length) for old in branches
+        Branches(of_face, old.arc[branch], old.shown[branch], area, count, borders, length) for old in branches
     )
     return divided, face
 

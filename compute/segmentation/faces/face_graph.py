@@ -22,12 +22,15 @@ class FaceGraph:
         Pairs of analyzed faces that share edges.
     length : (P,) float64
         Length of the edges they share.
+    shared : (P,) int64
+        The row of the surface's neighbouring triangles that each pair comes from.
     """
 
     area: Floats
     stands_for: Ints
     neighbours: Ints
     length: Floats
+    shared: Ints
 
 
 def face_graph(mesh: TriangleMesh, surface: Surface, face_of_triangle: Ints) -> FaceGraph:
@@ -45,13 +48,14 @@ def face_graph(mesh: TriangleMesh, surface: Surface, face_of_triangle: Ints) -> 
     area = sum_by(face_of_triangle, mesh.areas)
     face_of_surface = face_of_triangle[surface.input_triangle]
     stands_for = np.arange(len(area))
-    # A face that is not analyzed lies nearest to its first triangle's nearest one.
-    _, first = np.unique(face_of_triangle, return_index=True)
     is_analyzed = np.zeros(len(area), dtype=bool)
     is_analyzed[face_of_surface] = True
-    stands_for[~is_analyzed] = face_of_surface[surface.triangle_of_input[first[~is_analyzed]]]
+    if not is_analyzed.all():
+        # A face that is not analyzed lies nearest to its first triangle's nearest one.
+        _, first = np.unique(face_of_triangle, return_index=True)
+        stands_for[~is_analyzed] = face_of_surface[surface.triangle_of_input[first[~is_analyzed]]]
     edges = surface.mesh.edges
-    ends = surface.mesh.vertices[edges.vertices[edges.shared]]
     neighbours = face_of_surface[edges.neighbours]
     apart = neighbours[:, 0] != neighbours[:, 1]
-    return FaceGraph(area, stands_for, neighbours[apart], np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)[apart])
+    tails, heads = surface.mesh.vertices[edges.vertices[edges.shared][apart].T]
+    return FaceGraph(area, stands_for, neighbours[apart], np.linalg.norm(heads - tails, axis=1), np.flatnonzero(apart))

@@ -1,6 +1,6 @@
 """The part tree: the features of a shape with the faces they lie on, which every level is read from."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -59,6 +59,16 @@ class PartTree:
         return [pieces.arc[pieces.of_face] for pieces in self.branches]
 
     @property
+    def shown_arcs_of_faces(self) -> list[Ints]:
+        """For each tree, the arc (F,) whose part each face is shown in."""
+        return [pieces.shown[pieces.of_face] for pieces in self.branches]
+
+    @property
+    def exact(self) -> "PartTree":
+        """The same with each face shown in the part that has the greater half of it."""
+        return replace(self, branches=tuple(replace(pieces, shown=pieces.arc) for pieces in self.branches))
+
+    @property
     def bodies(self) -> tuple[int, ...]:
         """The parts that are left of the shells when all others are cut off; they may be in pieces."""
         return tuple(np.unique(self.trees[0].body).tolist())
@@ -90,16 +100,26 @@ class PartTree:
             cuts = self._numbered(is_cut)
         return cuts
 
+    @property
+    def ends(self) -> list[Bools]:
+        """For each tree, the mask (A,) of the arcs at which parts end at some level, in either mode."""
+        last, default_level = self.hierarchy.n_levels - 1, self.hierarchy.default_level
+        # Beyond the default level nested parts only become more.
+        levels = {NESTED: (*range(default_level + 1), last), FEATURES: range(last + 1)}
+        cuts = [self._cut_at_level(level, mode) for mode, chosen in levels.items() for level in chosen]
+        return [np.logical_or.reduce(of_tree) for of_tree in zip(*cuts, strict=True)]
+
     def labels_of_branches(self, cuts: list[Ints]) -> Ints:
         """Return the label (B,) of each branch, given the parts (A,) that are cut off at the arcs of each tree.
 
         Where parts of maxima and of minima overlap, the smaller one lies on top.
         """
-        body = self.trees[0].body[self.branches[0].arc]
+        body = self.trees[0].body[self.branches[0].shown]
         labels, size = body, np.full(len(body), np.inf)
         for tree, pieces, cut in zip(self.trees, self.branches, cuts, strict=True):
-            label = tree.spread(cut)[pieces.arc]
-            area = sum_by(label, pieces.area)[label]
+            part = tree.spread(cut)
+            label = part[pieces.shown]
+            area = sum_by(part[pieces.arc], pieces.area, 1 + int(part.max()))[label]
             is_on_top = (label > 0) & (label != body) & (area < (1 - ROUNDING) * size)
             labels, size = np.where(is_on_top, label, labels), np.where(is_on_top, area, size)
         return labels

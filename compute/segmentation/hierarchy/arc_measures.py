@@ -65,12 +65,13 @@ def _level_sets(
     order = np.argsort(values[net.triangles], axis=1, kind="stable")
     triangles = np.take_along_axis(net.triangles, order, axis=1)
     heights = values[triangles]
-    innermost = arc[net.triangles].min(axis=1)
+    lowest, highest = heights[:, 0].copy(), heights[:, 2].copy()
+    innermost = np.minimum.reduce([arc[corner] for corner in net.triangles.T])
     length, area = np.zeros((2, *levels.shape))
     for row, number in enumerate(chosen.tolist()):
         above = tree.subtree(number)[innermost]
-        whole = above & (heights[:, 2] <= levels[row].min())
-        near = np.flatnonzero(above & ~whole & (heights[:, 0] < levels[row].max()))
+        whole = above & (highest <= levels[row].min())
+        near = np.flatnonzero(above & ~whole & (lowest < levels[row].max()))
         for column, level in enumerate(levels[row].tolist()):
             length[row, column] = _level_set_length(heights[near], net.positions[triangles[near]], level)
             area[row, column] = net.areas[near] @ share_below(heights[near], np.array(level))

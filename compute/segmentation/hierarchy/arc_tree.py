@@ -45,6 +45,9 @@ class ArcTree:
         The place of that saddle's pair by falling persistence, the first of them if it has several: the saddle
         survives at all levels above. ``ALWAYS`` for saddles without a pair and for whole shells, which survive at every
         level, and ``NEVER`` for roots, each shell's own included.
+    joint_part, joint_closing : (A,) int64
+        The same for the two that a symmetry of the shape maps onto each other: the less of ``part`` and of ``closing``,
+        so that twins appear and are cut off together. Equal to these where there is no twin.
     """
 
     is_of_maxima: bool
@@ -55,28 +58,30 @@ class ArcTree:
     extremum: Ints
     saddle: Ints
     closing: Ints
+    joint_part: Ints
+    joint_closing: Ints
 
     @cached_property
     def closing_before(self) -> Ints:
-        """(A,) the smallest ``closing`` on the path from the leaf that names the arc to the arc, itself left out.
+        """(A,) the smallest ``joint_closing`` on the path from the leaf that names the arc to the arc, itself left out.
 
         ``NEVER`` where no arc is before it.
         """
         before = np.full(len(self.part), NEVER)
         smallest: dict[int, int] = {}
         # A parent has a larger index than its children, so the path from a leaf is met in its order.
-        for arc, (part, closing) in enumerate(zip(self.part.tolist(), self.closing.tolist(), strict=True)):
+        for arc, (part, closing) in enumerate(zip(self.part.tolist(), self.joint_closing.tolist(), strict=True)):
             before[arc] = smallest.get(part, NEVER)
             smallest[part] = min(closing, smallest.get(part, NEVER))
         return before
 
     @cached_property
     def least_closing_inside(self) -> Ints:
-        """(A,) the smallest ``closing`` of all arcs strictly inside the subtree of each arc; ``NEVER`` for leaves."""
+        """(A,) the smallest ``joint_closing`` of all arcs strictly inside each arc's subtree; ``NEVER`` for leaves."""
         least = np.full(len(self.part), NEVER)
         for arc, parent in enumerate(self.parent.tolist()):
             if parent != NO_ARC:
-                least[parent] = min(least[parent], least[arc], self.closing[arc])
+                least[parent] = min(least[parent], least[arc], self.joint_closing[arc])
         return least
 
     @property
@@ -112,7 +117,7 @@ class ArcTree:
 
     def is_cut(self, level: int) -> Bools:
         """Mask (A,) of the arcs that belong to a surviving leaf and close at a saddle that survives at ``level``."""
-        return (self.closing < level) & (self.part <= self.n_roots + level)
+        return (self.joint_closing < level) & (self.joint_part <= self.n_roots + level)
 
     def is_feature(self, level: int) -> Bools:
         """Mask (A,) of the arcs that are whole parts of a level: the first cut on the path from each surviving leaf."""
@@ -139,13 +144,16 @@ def flat_tree(n_parts: int, is_of_maxima: bool) -> ArcTree:
     """Return a tree of parts that all end at its root: what single borders cut off, and the rest."""
     n_arcs = n_parts + 1
     is_root = np.arange(n_arcs) == n_parts
+    part, closing = np.arange(1, n_arcs + 1), np.where(is_root, NEVER, ALWAYS)
     return ArcTree(
         is_of_maxima=is_of_maxima,
         n_roots=n_arcs,
         n_features=0,
         parent=np.where(is_root, NO_ARC, n_parts),
-        part=np.arange(1, n_arcs + 1),
+        part=part,
         extremum=np.zeros(n_arcs, dtype=np.int64),
         saddle=np.where(is_root, NO_SADDLE, 0),
-        closing=np.where(is_root, NEVER, ALWAYS),
+        closing=closing,
+        joint_part=part,
+        joint_closing=closing,
     )

@@ -38,8 +38,8 @@ def nested_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: in
         Of the hierarchy.
     """
     is_cut = _worthy_cuts(tree, measures, area, tree.is_cut(min(level, default_level)) & ~tree.is_shell)
-    is_finer = tree.is_cut(level) & (tree.closing >= default_level)
-    was_feature = tree.least_closing_inside > tree.closing
+    is_finer = tree.is_cut(level) & (tree.joint_closing >= default_level)
+    was_feature = tree.least_closing_inside > tree.joint_closing
     return is_cut | tree.is_shell | (is_finer & was_feature & (measures.roundness < HEMISPHERE))
 
 

@@ -37,12 +37,16 @@ def _with_bodies(tree: ArcTree, shell: Ints) -> ArcTree:
     parent[roots] = [root, *whole]
     part = np.where(tree.part > tree.n_roots, tree.part + n_more, tree.part)
     bodies = tree.n_roots + 1 + np.arange(n_more)
+    part = np.concatenate([part, bodies, part[roots[:1]]])
+    closing = np.concatenate([tree.closing, np.full(n_more, ALWAYS), [NEVER]])
     return replace(
         tree,
         n_roots=tree.n_roots + n_more,
         parent=parent,
-        part=np.concatenate([part, bodies, part[roots[:1]]]),
+        part=part,
         extremum=np.concatenate([tree.extremum, tree.extremum[roots[1:]], tree.extremum[roots[:1]]]),
         saddle=np.concatenate([tree.saddle, np.full(n_more + 1, NO_SADDLE)]),
-        closing=np.concatenate([tree.closing, np.full(n_more, ALWAYS), [NEVER]]),
+        closing=closing,
+        joint_part=part,
+        joint_closing=closing,
     )

@@ -61,15 +61,18 @@ def build_arc_tree(tree: MergeTree, is_of_maxima: bool, features: Features) -> t
     chains = _chains(tree, leaf, events)
     parent, saddle = np.full(len(extremum), NO_ARC), np.full(len(extremum), NO_SADDLE)
     parent[chains.arc], saddle[chains.arc] = len(leaf) + chains.event, events.vertex[chains.event]
+    part, closing = features.part[extremum], np.where(saddle == NO_SADDLE, NEVER, features.closing[saddle])
     arcs = ArcTree(
         is_of_maxima=is_of_maxima,
         n_roots=features.n_roots,
         n_features=features.n_features,
         parent=parent,
-        part=features.part[extremum],
+        part=part,
         extremum=extremum,
         saddle=saddle,
-        closing=np.where(saddle == NO_SADDLE, NEVER, features.closing[saddle]),
+        closing=closing,
+        joint_part=part,
+        joint_closing=closing,
     )
     return arcs, _places(tree, features, leaf, events, chains)
 

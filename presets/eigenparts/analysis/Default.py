@@ -6,4 +6,5 @@ settings.eigenfunction = 1
 settings.order = "AUTO"
 settings.boundary = "NEUMANN"
 settings.shells = "BRIDGED"
+settings.borders = "EDGES"
 settings.use_modifiers = False

@@ -6,4 +6,5 @@ settings.eigenfunction = 1
 settings.order = "1"
 settings.boundary = "NEUMANN"
 settings.shells = "BRIDGED"
+settings.borders = "EDGES"
 settings.use_modifiers = False

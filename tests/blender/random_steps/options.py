@@ -13,6 +13,7 @@ LIKELY = {
     # Cubic elements are as good as others here, and take longer.
     "order": ["1", "1", "1", "1", "AUTO", "2", "3"],
     "boundary": ["NEUMANN", "NEUMANN", "NEUMANN", "DIRICHLET"],
+    "borders": ["EDGES", "EDGES", "EXACT"],
     "field": ["DIFFUSION", "DIFFUSION", "DIFFUSION", "EIGENFUNCTION", "ATTRIBUTE"],
     **{"attribute": ["heat"], "mask": ["", "", "grip"], "group_names": ["grip"], "object_name": [""]},
     **{"index": [0], "into": [0], "source": [""], "source_vertex": [0, 1, 5, 9], "target_vertex": [0, 1, 5, 9]},

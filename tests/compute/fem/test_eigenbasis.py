@@ -6,6 +6,7 @@ import scipy.linalg
 from scipy.sparse.linalg import eigsh
 
 from compute.errors import Cancelled, EngineError
+from compute.fem import shift_invert
 from compute.fem.assembly import mass_matrix, stiffness_matrix
 from compute.fem.eigenbasis import solve_eigenbasis, solve_on_surface
 from compute.fem.space import function_space
@@ -233,6 +234,42 @@ def test_functions_far_above_the_first_are_left_out():
     few = solve_on_surface(clean_surface(ellipsoid), 30, largest_ratio=10.0).values
     assert 1 < len(few) < 30
     np.testing.assert_allclose(few, everything[everything <= 10 * everything[0]], rtol=1e-9)
+
+
+@orders
+def test_pairs_that_are_computed_in_turns_are_those_that_are_computed_at_once(order):
+    """A tetrahedron has eigenvalues that are threefold and sixfold, which a turn may cut in two."""
+    mesh = tetrahedron(4)
+    everything = solve_eigenbasis(mesh, 40, order=order)
+    few = solve_on_surface(clean_surface(mesh), 40, order=order, largest_ratio=14.0)
+    n_few = len(few.values)
+    assert shift_invert.FIRST_PAIRS < n_few < 40
+    np.testing.assert_allclose(few.values, everything.values[:n_few], rtol=1e-9)
+    np.testing.assert_allclose(few.functions.T @ few.mass @ few.functions, np.eye(n_few), atol=1e-9)
+
+
+@orders
+def test_functions_that_nobody_uses_are_not_computed(monkeypatch, order):
+    """A long body has few functions within the ratio, and one turn of linear pairs is enough for them."""
+    asked, solve = [], shift_invert.eigsh
+    monkeypatch.setattr(shift_invert, "eigsh", lambda *a, **options: asked.append(a[1]) or solve(*a, **options))
+    mesh = _bumpy(icosphere(4))
+    long = clean_surface(TriangleMesh(mesh.vertices * [1, 1, 6], mesh.triangles))
+    few = solve_on_surface(long, 30, order=order, largest_ratio=10.0)
+    assert len(few.values) < 8
+    assert asked == [shift_invert.FIRST_PAIRS]
+
+
+def test_how_many_more_pairs_are_wanted_follows_from_those_that_are_known():
+    wanted = shift_invert.WantedPairs(31, n_constant=1, largest_ratio=10.0)
+    assert wanted.n_missing(np.zeros(0)) == shift_invert.FIRST_PAIRS
+    assert wanted.n_missing(np.array([0.0, 1.0, 9.0, 10.1])) == 0
+    # Three pairs up to 5 promise six up to 10, and one more shows that there are no others.
+    assert wanted.n_missing(np.array([0.0, 1.0, 5.0])) == 4
+    # The promise is never more than what is wanted at the most, whatever the values are.
+    for values in ([0.0, 0.0, 0.0], [-1e-17, -1e-18, 0.0], [0.0, 1.0, 1.0]):
+        assert wanted.n_missing(np.array(values)) <= 28
+    assert shift_invert.WantedPairs(31).n_missing(np.array([1.0, 2.0])) == 29
 
 
 def test_progress_never_falls_and_ends_at_one():

@@ -11,7 +11,7 @@ PARENT = np.array([2, 2, 4, 4, -1])
 def row_of_faces(n):
     """Return the graph of n faces of area 1 in a row."""
     pairs = np.stack([np.arange(n - 1), np.arange(1, n)], axis=1)
-    return FaceGraph(np.ones(n), np.arange(n), pairs, np.ones(n - 1))
+    return FaceGraph(np.ones(n), np.arange(n), pairs, np.ones(n - 1), np.arange(n - 1))
 
 
 def test_a_face_goes_to_the_innermost_arc_whose_subtree_holds_more_than_half():
@@ -39,7 +39,7 @@ def test_an_arc_in_two_pieces_is_two_branches():
 
 def test_faces_that_are_not_analyzed_share_the_fate_of_the_face_they_lie_on():
     graph = row_of_faces(3)
-    graph = FaceGraph(graph.area, np.array([0, 1, 0]), graph.neighbours[:1], graph.length[:1])
+    graph = FaceGraph(graph.area, np.array([0, 1, 0]), graph.neighbours[:1], graph.length[:1], graph.shared[:1])
     (branches,) = build_branches([PARENT], [ArcAreas(np.array([0, 1]), np.array([0, 4]), np.ones(2))], graph)
     assert branches.of_face[2] == branches.of_face[0] != branches.of_face[1]
     assert branches.n_faces[branches.of_face[0]] == 2
@@ -47,7 +47,9 @@ def test_faces_that_are_not_analyzed_share_the_fate_of_the_face_they_lie_on():
 
 def pieces(area, borders, length):
     n = len(area)
-    return Branches(np.arange(n, dtype=np.int32), np.arange(n), np.array(area, float), np.ones(n, int), borders, length)
+    return Branches(
+        np.arange(n, dtype=np.int32), *2 * [np.arange(n)], np.array(area, float), np.ones(n, int), borders, length
+    )
 
 
 def test_a_stray_piece_joins_the_neighbour_it_shares_most_border_with():

@@ -33,7 +33,9 @@ from tests.shapes import star
 def row_of_branches(n):
     """Return n branches of area 1 in a row."""
     pairs = np.stack([np.arange(n - 1), np.arange(1, n)], axis=1)
-    return Branches(np.arange(n, dtype=np.int32), np.arange(n), np.ones(n), np.ones(n, int), pairs, np.ones(n - 1))
+    return Branches(
+        np.arange(n, dtype=np.int32), *2 * [np.arange(n)], np.ones(n), np.ones(n, int), pairs, np.ones(n - 1)
+    )
 
 
 def correct(labels, parent, items, side=None, painted=None):

@@ -77,7 +77,7 @@ def test_each_level_cuts_off_what_closes_below_it(analysis):
     for tree in analysis.hierarchy.trees:
         for level in range(analysis.hierarchy.n_levels):
             is_cut = tree.is_cut(level)
-            assert not is_cut[tree.closing >= level].any()
+            assert not is_cut[tree.joint_closing >= level].any()
             for arc in np.flatnonzero(tree.is_feature(level)).tolist():
                 same_part = [other for other in range(arc) if tree.part[other] == tree.part[arc]]
                 assert not is_cut[same_part].any()
@@ -147,7 +147,7 @@ def test_the_label_of_a_face_is_the_part_that_its_path_to_the_root_is_cut_off_at
     part_tree = analysis.part_tree()
     if len(part_tree.trees) > 1:
         pytest.skip("where two trees overlap the smaller part lies on top")
-    (tree,), (arcs,), (pieces,) = part_tree.trees, part_tree.arcs_of_faces, part_tree.branches
+    (tree,), (arcs,), (pieces,) = part_tree.trees, part_tree.shown_arcs_of_faces, part_tree.branches
     for level in range(analysis.hierarchy.n_levels):
         (cut,) = part_tree.cut_arcs(level, mode)
         first = [next((cut[each] for each in climbed(tree, arc) if cut[each]), 0) for arc in range(len(cut))]

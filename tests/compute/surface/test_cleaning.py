@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from compute import MeshError, TriangleMesh
-from compute.surface.cleaning import clean_surface
+from compute.choices import SHELLS
+from compute.surface.cleaning import analyzed_surface, clean_surface
 from tests.shapes import icosphere, joined, rectangle, tetrahedron
 
 
@@ -79,3 +80,11 @@ def test_refuses_a_component_that_does_not_exist():
 def test_refuses_loose_triangles():
     with pytest.raises(MeshError, match="single triangle"):
         clean_surface(TriangleMesh(np.eye(3), [[0, 1, 2]]))
+
+
+def test_a_mesh_that_needs_no_cleaning_keeps_what_it_knows_of_itself():
+    """Edges and areas of a large mesh take a good part of its analysis."""
+    mesh = icosphere(2)
+    assert all(analyzed_surface(mesh, shells).mesh is mesh for shells in SHELLS)
+    twice = TriangleMesh(mesh.vertices, np.vstack([mesh.triangles, mesh.triangles[:1]]))
+    np.testing.assert_array_equal(analyzed_surface(twice, "largest").mesh.triangles, mesh.triangles)

@@ -10,7 +10,8 @@ from compute.analysis.analyze import analyze
 from compute.errors import Cancelled, RegistrationError
 from compute.registration.eigenfunctions.matching import match, match_shapes
 from compute.registration.eigenfunctions.spectral_shape import SpectralShape, spectral_shape
-from compute.registration.eigenfunctions.zoomout import cheapest_assignment, nearest_points, with_constant
+from compute.registration.eigenfunctions.zoomout import nearest_points, with_constant
+from compute.surface.assignment import cheapest_assignment
 from compute.surface.mesh import TriangleMesh
 from examples import hand, quadruped
 from tests.compute.registration.shapes import (

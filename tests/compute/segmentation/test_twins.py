@@ -1,0 +1,61 @@
+"""Twins: what a symmetry maps onto each other appears and is cut off together, in every pose."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from compute import MODES, TriangleMesh, analyze
+from examples import humanoid
+from tests.shapes import star
+
+
+def triangles_of(quads):
+    return np.vstack([quads[:, :3], quads[:, [0, 2, 3]]])
+
+
+@pytest.fixture(scope="module")
+def character():
+    return humanoid(6000)
+
+
+def analysis_in(character, pose):
+    return analyze(TriangleMesh(character.mesh_in_pose(pose), triangles_of(character.quads)), order=1)
+
+
+@pytest.fixture(scope="module", params=["rest", "walk"])
+def analysis(character, request):
+    return analysis_in(character, request.param)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_every_level_of_a_symmetric_body_is_symmetric_in_every_pose(character, analysis, mode):
+    """Each part covers its own mirror image in the rest pose, or that of one other part."""
+    rest = character.mesh_in_pose("rest")[triangles_of(character.quads)].mean(axis=1)
+    mirror = cKDTree(rest).query(rest * [-1, 1, 1])[1]
+    area = analysis.mesh.areas
+    for level in range(analysis.hierarchy.n_levels):
+        labels = analysis.exact_labels(analysis.segment(level=level, mode=mode).labels)
+        for part in np.unique(labels):
+            image = labels[mirror] == part
+            overlaps = [
+                area[image & (labels == other)].sum() / area[image | (labels == other)].sum()
+                for other in np.unique(labels[image])
+            ]
+            assert max(overlaps) > 0.6, (level, part)
+
+
+def test_twins_are_pairs_and_equally_high(analysis):
+    (tree,) = analysis.hierarchy.trees
+    joined = np.flatnonzero(tree.joint_part != tree.part)
+    assert len(joined)
+    for arc in joined.tolist():
+        twin = np.flatnonzero(tree.part == tree.joint_part[arc])[0]
+        assert tree.joint_part[twin] == tree.part[twin]
+        heights = analysis.field.values[tree.extremum[[arc, twin]]]
+        assert np.ptp(heights) < 0.05 * analysis.field.value_range
+
+
+def test_a_shape_without_symmetry_has_no_twins():
+    (tree,) = analyze(star(5, 3)).hierarchy.trees
+    np.testing.assert_array_equal(tree.joint_part, tree.part)
+    np.testing.assert_array_equal(tree.joint_closing, tree.closing)
