@@ -91,7 +91,8 @@ def slice_arcs(analysis: Analysis, graph: ReebGraph, labels: NDArray[np.int32]) 
     rises = _rises(lowest, offset, values[graph.vertex[graph.arcs]], ROUNDING * analysis.field.value_range)
     size = float(np.linalg.norm(np.ptp(net.positions[net.used], axis=0)))
     # Nothing is wider than the shape, whatever a level field makes of it.
-    girth = np.clip(total / rises, LEVEL * size, np.pi * size)
+    with np.errstate(over="ignore"):
+        girth = np.clip(total / rises, LEVEL * size, np.pi * size)
     label = labels[analysis.surface.input_triangle[net.triangle_of_surface]]
     return Slices(
         offset=offset,

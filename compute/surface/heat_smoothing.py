@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse import coo_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg, splu
 
@@ -18,7 +18,7 @@ LONGEST_TIME = 1e4
 LEAST_WEIGHT = 1e-3
 # Triangles flatter than this fraction of the mean area count as if they had it.
 LEAST_AREA = 1e-6
-# Of the mean on the diagonal: what a system is made regular by.
+# What a system with ones on its diagonal is made regular by.
 LEAST_STIFFNESS = 1e-12
 
 
@@ -139,10 +139,12 @@ def biharmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floa
     filled = values.copy()
     if len(unknown):
         known, rows = values[is_known], bending[unknown]
-        system = rows[:, unknown]
+        # Entries are the inverse sizes of triangles to the fourth, so that those of slivers would drown all others.
+        diagonal = rows[:, unknown].diagonal()
+        scale = diags_array(1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)))
         # Vertices that hang on flat triangles alone would be undetermined.
-        system += LEAST_STIFFNESS * diags_array(np.full(len(unknown), system.diagonal().mean()))
-        solved = splu(system.tocsc()).solve(np.ascontiguousarray(-(rows[:, is_known] @ known)))
+        system = scale @ rows[:, unknown] @ scale + LEAST_STIFFNESS * eye_array(len(unknown))
+        solved = scale @ splu(system.tocsc()).solve(np.ascontiguousarray(-(scale @ (rows[:, is_known] @ known))))
         filled[unknown] = np.clip(solved, known.min(axis=0), known.max(axis=0))
     return filled
 

@@ -22,7 +22,7 @@ def half():
 
 def refused_transfer():
     with pytest.raises(RuntimeError) as refusal:
-        bpy.ops.eigenparts.transfer(layers={"GROUPS"})
+        bpy.ops.eigenparts.transfer(layers={"GROUPS"}, method="SHAPE")
     return str(refusal.value)
 
 
