@@ -206,9 +206,9 @@ def _map_by_place(
     progress = compute.naming(progress, target.name)
     progress(0.0, "Looking for the nearest points")
     meshes = _mesh_in_world(source), _mesh_in_world(target)
-    if method == "auto" and not compute.lie_together(*meshes):
-        return None
     correspondence = compute.correspond_by_place(*meshes)
+    if method == "auto" and not compute.lie_together(*meshes, correspondence.points, correspondence.is_sure):
+        return None
     if not correspondence.is_sure.any():
         raise Refusal(" ".join([NOT_IN_PLACE.format(target.name, source.name), *_unfinished(source, target)]))
     return ShapeMap(correspondence, compute.welded_vertices(meshes[1]), (), ())

@@ -3,7 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array, eye_array
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg, splu
 
 from ..errors import MeshError
@@ -101,8 +100,7 @@ def harmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floats
     weight = 1 / np.maximum(lengths, 1e-3 * max(float(lengths.mean()), 1e-300))
     graph = coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(n, n)).tocsr()
     graph = (graph + graph.T).tocsr()
-    piece = connected_components(graph, directed=False)[1]
-    unknown = np.flatnonzero(~is_known & np.isin(piece, piece[is_known]))
+    unknown = _unknown_beside_known(mesh, is_known)
     filled = values.copy()
     if len(unknown):
         rows = graph[unknown]
@@ -134,8 +132,7 @@ def biharmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floa
     """
     laplacian = stiffness(mesh)
     bending = (laplacian @ diags_array(1 / _vertex_areas(mesh)) @ laplacian).tocsr()
-    piece = connected_pieces(mesh.edges.vertices[:, 0], mesh.edges.vertices[:, 1], len(mesh.vertices))
-    unknown = np.flatnonzero(~is_known & np.isin(piece, piece[is_known]))
+    unknown = _unknown_beside_known(mesh, is_known)
     filled = values.copy()
     if len(unknown):
         known, rows = values[is_known], bending[unknown]
@@ -147,6 +144,18 @@ def biharmonic_fill(mesh: TriangleMesh, values: Floats, is_known: Bools) -> Floa
         solved = scale @ splu(system.tocsc()).solve(np.ascontiguousarray(-(scale @ (rows[:, is_known] @ known))))
         filled[unknown] = np.clip(solved, known.min(axis=0), known.max(axis=0))
     return filled
+
+
+def piece_of_vertices(mesh: TriangleMesh) -> Ints:
+    """Return (V,) the piece of each vertex that hangs together by edges."""
+    edges = mesh.edges.vertices
+    return connected_pieces(edges[:, 0], edges[:, 1], len(mesh.vertices))
+
+
+def _unknown_beside_known(mesh: TriangleMesh, is_known: Bools) -> Ints:
+    """Return the unknown vertices of pieces that have known ones."""
+    piece = piece_of_vertices(mesh)
+    return np.flatnonzero(~is_known & np.isin(piece, piece[is_known]))
 
 
 def stiffness(mesh: TriangleMesh) -> csr_array:

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...memory import told_if_full
 from ...surface.cleaning import welded_vertices
-from ...surface.mesh import Floats, TriangleMesh, area_vectors, unit_rows
+from ...surface.mesh import Bools, Floats, TriangleMesh, area_vectors, unit_rows
 from .confidence import SURE
 from .shape_pair import Image
 from .surface_points import SurfacePoints, SurfaceTree
@@ -37,26 +37,29 @@ def map_by_place(source: TriangleMesh, target: TriangleMesh) -> Image:
     source, target : TriangleMesh
         In one space, such as the world.
     """
-    diagonal = _largest_diagonal(source, target)
-    tree = SurfaceTree(source.vertices, source.triangles, turn=SAME_WAY * diagonal, wrong_side=SAME_WAY * diagonal)
-    normals = _vertex_normals(target)
-    points, distance = _nearest(tree, target.vertices, normals)
-    landed = unit_rows(points.blend(_vertex_normals(source), source.triangles))
-    angle = np.arccos(np.clip(np.abs((landed * normals).sum(axis=1)), 0, 1))
-    doubt = (distance / (NEAR * diagonal)) ** 4 + (angle / ANGLE) ** 4
+    tree = _tree_of(source, target)
+    points, confidence = _landed(tree, source, target)
     corners = target.vertices[target.triangles]
     middles, _ = _nearest(tree, corners.mean(axis=1), unit_rows(area_vectors(corners)))
-    return Image(points, middles.triangles, 1 / (1 + doubt))
+    return Image(points, middles.triangles, confidence)
 
 
 @told_if_full
-def lie_together(source: TriangleMesh, target: TriangleMesh) -> bool:
-    """Whether one of two meshes lies on the other as clothes do on a body, or is the same surface with other faces."""
-    there, back = map_by_place(source, target), map_by_place(target, source)
-    less, more = sorted((_share_of_area(target, there), _share_of_area(source, back)))
+def lie_together(source: TriangleMesh, target: TriangleMesh, points: SurfacePoints, is_sure: Bools) -> bool:
+    """Whether one of two meshes lies on the other as clothes do on a body, or is the same surface with other faces.
+
+    Parameters
+    ----------
+    source, target : TriangleMesh
+    points : SurfacePoints
+        Where the vertices of the target lie by place.
+    is_sure : (Vt,) bool
+    """
+    _, back = _landed(_tree_of(target, source), target, source)
+    less, more = sorted((_share_of_area(target, is_sure), _share_of_area(source, back >= SURE)))
     if (more >= WHOLE and less < more - CLEARLY) or (more >= HALF and less < LITTLE * more):
         return True
-    gaps = np.linalg.norm(there.points.blend(source.vertices, source.triangles) - target.vertices, axis=1)
+    gaps = np.linalg.norm(points.blend(source.vertices, source.triangles) - target.vertices, axis=1)
     nearly_all = np.quantile(gaps[target.used], WHOLE)
     return less >= WHOLE and bool(nearly_all <= SAME_SURFACE * _largest_diagonal(source, target))
 
@@ -64,6 +67,21 @@ def lie_together(source: TriangleMesh, target: TriangleMesh) -> bool:
 def _largest_diagonal(*meshes: TriangleMesh) -> float:
     """Return the diagonal of the largest box around one of some meshes."""
     return max(float(np.linalg.norm(np.ptp(mesh.vertices[mesh.used], axis=0))) for mesh in meshes)
+
+
+def _tree_of(source: TriangleMesh, target: TriangleMesh) -> SurfaceTree:
+    same_way = SAME_WAY * _largest_diagonal(source, target)
+    return SurfaceTree(source.vertices, source.triangles, turn=same_way, wrong_side=same_way)
+
+
+def _landed(tree: SurfaceTree, source: TriangleMesh, target: TriangleMesh) -> tuple[SurfacePoints, Floats]:
+    """Return where the vertices of a target land on a source, of which there is a tree, and with what confidence."""
+    normals = _vertex_normals(target)
+    points, distance = _nearest(tree, target.vertices, normals)
+    landed = unit_rows(points.blend(_vertex_normals(source), source.triangles))
+    angle = np.arccos(np.clip(np.abs((landed * normals).sum(axis=1)), 0, 1))
+    doubt = (distance / (NEAR * _largest_diagonal(source, target))) ** 4 + (angle / ANGLE) ** 4
+    return points, 1 / (1 + doubt)
 
 
 def _nearest(tree: SurfaceTree, places: Floats, normals: Floats) -> tuple[SurfacePoints, Floats]:
@@ -75,9 +93,8 @@ def _nearest(tree: SurfaceTree, places: Floats, normals: Floats) -> tuple[Surfac
     return SurfacePoints(triangles, barycentric), np.concatenate([distance for _, distance in found])
 
 
-def _share_of_area(mesh: TriangleMesh, image: Image) -> float:
+def _share_of_area(mesh: TriangleMesh, is_sure: Bools) -> float:
     """Return the share of the area of a mesh that is sure; vertices may be crowded in the face."""
-    is_sure = image.confidence >= SURE
     return float(is_sure[mesh.triangles].mean(axis=1) @ mesh.areas / mesh.areas.sum())
 
 

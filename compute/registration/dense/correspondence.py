@@ -165,8 +165,10 @@ def correspond(
     is_led = matching is not None or points is not None
     _check_method(method, source, target, is_led=is_led)
     is_free = method == "auto" and not is_led and not share_topology(source.surface, target.surface)
-    if method == "place" or (is_free and lie_together(source.mesh, target.mesh)):
-        return correspond_by_place(source.mesh, target.mesh)
+    if method == "place" or is_free:
+        by_place = correspond_by_place(source.mesh, target.mesh)
+        if method == "place" or lie_together(source.mesh, target.mesh, by_place.points, by_place.is_sure):
+            return by_place
     require_pair(source.surface, target.surface, BYTES_OF_MAP)
     progress = rising(progress or silent)
     progress(0.0, "Computing functions")
@@ -182,13 +184,18 @@ def correspond(
 
 
 def _correspond_matched(pair: ShapePair, progress: Progress) -> Correspondence:
+    image, found_by = _matched_image(pair, progress)
+    return _correspondence(_with_points_kept(pair, image), pair.matching, found_by, pair.source.mesh)
+
+
+def _matched_image(pair: ShapePair, progress: Progress) -> tuple[Image, str]:
     if pair.matching.same_topology:
-        return _correspondence(pair, map_by_number(pair.source, pair.target), BY_NUMBER)
+        return map_by_number(pair.source, pair.target), BY_NUMBER
     _check_matching(pair)
     progress(0.5, "Comparing the faces")
     if (image := map_by_faces(pair)) is not None:
-        return _correspondence(pair, image, BY_FACES)
-    return _correspondence(pair, map_by_shape(pair, section(progress, 0.5, 1.0)), BY_SHAPE)
+        return image, BY_FACES
+    return map_by_shape(pair, section(progress, 0.5, 1.0)), BY_SHAPE
 
 
 def _check_method(method: str, source: Analysis, target: Analysis, *, is_led: bool) -> None:
@@ -227,16 +234,7 @@ def correspond_by_place(source: TriangleMesh, target: TriangleMesh) -> Correspon
     >>> correspond_by_place(square, patch).is_sure.tolist()
     [True, True, False]
     """
-    image = map_by_place(source, target)
-    return Correspondence(
-        triangles=image.points.triangles,
-        barycentric=image.points.barycentric,
-        triangle_of_triangle=image.triangles,
-        confidence=image.confidence,
-        matching=None,
-        found_by=BY_PLACE,
-        source_triangles=source.triangles,
-    )
+    return _correspondence(map_by_place(source, target), None, BY_PLACE, source)
 
 
 def _check_matching(pair: ShapePair) -> None:
@@ -261,14 +259,13 @@ def _with_points_kept(pair: ShapePair, image: Image) -> Image:
     return Image(SurfacePoints(triangles, barycentric), image.triangles, confidence)
 
 
-def _correspondence(pair: ShapePair, image: Image, found_by: str) -> Correspondence:
-    image = _with_points_kept(pair, image)
+def _correspondence(image: Image, matching: Matching | None, found_by: str, source: TriangleMesh) -> Correspondence:
     return Correspondence(
         triangles=image.points.triangles,
         barycentric=image.points.barycentric,
         triangle_of_triangle=image.triangles,
         confidence=image.confidence,
-        matching=pair.matching,
+        matching=matching,
         found_by=found_by,
-        source_triangles=pair.source.mesh.triangles,
+        source_triangles=source.triangles,
     )

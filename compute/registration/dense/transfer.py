@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 
 from ...memory import told_if_full
-from ...surface.heat_smoothing import biharmonic_fill, harmonic_fill
+from ...surface.heat_smoothing import biharmonic_fill, harmonic_fill, piece_of_vertices
 from ...surface.mesh import Bools, Floats, Ints, TriangleMesh, area_vectors, connected_pieces, unit_rows
 from .correspondence import BY_PLACE, Correspondence
 from .deformation_graph import nearest_rotations
@@ -31,8 +31,7 @@ def fill_unsure(correspondence: Correspondence, target: TriangleMesh, values: Fl
     if correspondence.found_by != BY_PLACE:
         return harmonic_fill(target, values, correspondence.is_sure)
     # What hangs over, as a skirt between the legs, goes on with the slope of what lies on the source.
-    edges = target.edges.vertices
-    piece = connected_pieces(edges[:, 0], edges[:, 1], len(target.vertices))
+    piece = piece_of_vertices(target)
     share = np.bincount(piece, correspondence.is_sure) / np.bincount(piece)
     return biharmonic_fill(target, values, correspondence.is_sure | (share < LEAST_SUPPORT)[piece])
 

@@ -26,8 +26,6 @@ NEAR = 0.06
 NEAR_FEATURE = 0.1
 # Rounds in which a symmetry settles.
 MOST_ROUNDS = 6
-
-
 # If one saddle is e times as persistent as another, that speaks against twins as much as this distance between them.
 PERSISTENT = 0.02
 # A shape is symmetric in space if its reflection lies this near to it, in units of the root of its area.
