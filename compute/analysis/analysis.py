@@ -19,7 +19,7 @@ from ..memory import require_memory, told_if_full
 from ..msc.diagram import PersistenceDiagram
 from ..msc.morse_smale import FieldTopology, MorseSmaleComplex
 from ..progress import Progress, silent
-from ..segmentation.borders.edge_paths import along_edges, field_lengths
+from ..segmentation.borders.edge_paths import along_edges, border_costs
 from ..segmentation.borders.edge_profile import EdgeProfile, edge_profile
 from ..segmentation.borders.level_set_borders import (
     Polyline,
@@ -297,8 +297,7 @@ class Analysis:
         exact = PartTree(self.hierarchy, self.measures, heights, branches)
         if self.face_borders == EXACT:
             return exact
-        length = field_lengths(self.surface, self.field)[graph.shared]
-        return along_edges(exact, shares, graph, length)
+        return along_edges(exact, shares, graph, border_costs(self.surface, self.field)[graph.shared])
 
     def profile(self, edges: Ints | None = None) -> EdgeProfile:
         """Return the field along edges of the input.

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..surface.cleaning import Surface
-from ..surface.mesh import Bools, Floats, Ints, TriangleMesh, area_vectors, unit_rows
+from ..surface.mesh import Bools, Floats, Ints, area_vectors, vertex_normals
 from ..surface.orientation import wrongly_wound
 from ..surface.ties import CHOICE, first_nearest
 
@@ -43,7 +43,8 @@ class Interior:
         triangles = np.where(wrong[:, None], mesh.triangles[:, ::-1], mesh.triangles)
         used = np.unique(triangles)
         corners = mesh.vertices[triangles]
-        return cls(mesh.vertices[used], _vertex_normals(mesh, triangles)[used], corners)
+        normals = vertex_normals(triangles, area_vectors(mesh.vertices[triangles]), len(mesh.vertices))
+        return cls(mesh.vertices[used], normals[used], corners)
 
     def centred(self, points: Floats, radius: Floats) -> Floats:
         """Return points (p, 3), those outside or close under the surface pulled into the middle between its sides.
@@ -150,9 +151,3 @@ def _n_above(corners: Floats, place: Floats, height: float) -> int:
 
 def _turn(first: Floats, second: Floats) -> Floats:
     return first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-
-
-def _vertex_normals(mesh: TriangleMesh, triangles: Ints) -> Floats:
-    around = np.repeat(area_vectors(mesh.vertices[triangles]), 3, axis=0)
-    sums = [np.bincount(triangles.ravel(), column, len(mesh.vertices)) for column in around.T]
-    return unit_rows(np.stack(sums, axis=1))

@@ -21,7 +21,7 @@ LEAST_AREA = 1e-6
 LEAST_STIFFNESS = 1e-12
 
 
-def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
+def smoothed(mesh: TriangleMesh, values: Floats, width: float, tolerance: float = 1e-6) -> Floats:
     """Return values on the vertices after heat has spread, so that a step becomes a slope of the given width.
 
     Constants stay as they are, integrals too; nothing passes between pieces that are not connected.
@@ -32,6 +32,8 @@ def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
     values : (V, n) float64
     width : float
         Distance on the surface over which a step falls from 90 % to 10 %, in the mesh's unit.
+    tolerance : float
+        How far off the solution may be, relative to the values.
 
     Raises
     ------
@@ -48,7 +50,7 @@ def smoothed(mesh: TriangleMesh, values: Floats, width: float) -> Floats:
     mass = _vertex_areas(mesh)
     system = (diags_array(mass) + time * stiffness(mesh)).tocsr()
     precondition = diags_array(1 / system.diagonal())
-    columns = [cg(system, mass * column, x0=column, rtol=1e-6, M=precondition)[0] for column in values.T]
+    columns = [cg(system, mass * column, x0=column, rtol=tolerance, M=precondition)[0] for column in values.T]
     return np.stack(columns, axis=1)
 
 

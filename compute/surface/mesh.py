@@ -258,6 +258,13 @@ def unit_rows(rows: Floats) -> Floats:
     return rows / np.maximum(np.linalg.norm(rows, axis=-1, keepdims=True), np.finfo(float).tiny)
 
 
+def vertex_normals(triangles: Ints, vectors: Floats, n_vertices: int) -> Floats:
+    """Return (V, 3) unit normals: the direction of the sum of the area vectors (T, 3) around each vertex."""
+    around = np.repeat(vectors, 3, axis=0)
+    sums = [np.bincount(triangles.ravel(), column, n_vertices) for column in around.T]
+    return unit_rows(np.stack(sums, axis=1))
+
+
 def sum_by(index: Ints, weight: Floats, size: int = 0) -> Floats:
     """Return the sum of the weights at each index, of at least the given size."""
     return np.asarray(np.bincount(index, weight, size), dtype=np.float64)

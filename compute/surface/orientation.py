@@ -45,6 +45,8 @@ def _turn_within_patches(mesh: TriangleMesh) -> tuple[Bools, Ints]:
     n_triangles = len(mesh.triangles)
     joints = _joints(mesh)
     left, right = joints.triangles.T
+    if joints.agree.all():
+        return np.zeros(n_triangles, dtype=bool), connected_pieces(left, right, n_triangles)
     ends = np.where(joints.agree, right, right + n_triangles)
     opposite = np.where(joints.agree, right + n_triangles, right)
     rows, columns = np.concatenate([left, left + n_triangles]), np.concatenate([ends, opposite])

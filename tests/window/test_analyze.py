@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import examples
 from tests.blender.test_background import wait_for
 from tests.window.conftest import MODULE, add_character, analyze, choose, installed
 
@@ -132,12 +133,15 @@ def test_quitting_in_the_middle_leaves_nothing(humanoid):
         wait_for(lambda: not Path(folder).exists())
 
 
-def test_the_window_can_be_used_meanwhile(running):
-    running.run("bpy.context.scene.cursor.location = (1, 2, 3)")
-    running.press("N")
-    running.settle()
-    assert running.value(f"{STATUS}.is_running")
-    running.wait_for("'eigenparts_state' in bpy.data.meshes[0]")
+def test_the_window_can_be_used_meanwhile(window):
+    add_character(window, examples.humanoid(20000))
+    window.run("with over_view(): bpy.ops.eigenparts.analyze('INVOKE_DEFAULT', order='3')")
+    window.wait_for(f"{STATUS}.is_running")
+    window.run("bpy.context.scene.cursor.location = (1, 2, 3)")
+    window.press("N")
+    window.settle()
+    assert window.value(f"{STATUS}.is_running")
+    window.wait_for("'eigenparts_state' in bpy.data.meshes[0]")
 
 
 def test_a_mesh_that_is_renamed_meanwhile_is_found(running):

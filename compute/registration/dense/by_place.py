@@ -4,7 +4,7 @@ import numpy as np
 
 from ...memory import told_if_full
 from ...surface.cleaning import welded_vertices
-from ...surface.mesh import Bools, Floats, TriangleMesh, area_vectors, unit_rows
+from ...surface.mesh import Bools, Floats, TriangleMesh, area_vectors, unit_rows, vertex_normals
 from .confidence import SURE
 from .shape_pair import Image
 from .surface_points import SurfacePoints, SurfaceTree
@@ -101,6 +101,5 @@ def _share_of_area(mesh: TriangleMesh, is_sure: Bools) -> float:
 def _vertex_normals(mesh: TriangleMesh) -> Floats:
     """Return (V, 3) unit normals, the same for all vertices at one place along a seam."""
     place = welded_vertices(mesh)
-    sums = np.zeros_like(mesh.vertices)
-    np.add.at(sums, place[mesh.triangles.ravel()], np.repeat(area_vectors(mesh.vertices[mesh.triangles]), 3, axis=0))
-    return unit_rows(sums)[place]
+    vectors = area_vectors(mesh.vertices[mesh.triangles])
+    return vertex_normals(place[mesh.triangles], vectors, len(mesh.vertices))[place]

@@ -12,7 +12,7 @@ from ...fem.eigenbasis import Eigenbasis
 from ...fem.space import function_space
 from ...fields.scalar_field import refined_net
 from ...progress import Progress, silent
-from ...surface.mesh import Floats, Ints, TriangleMesh, unit_rows
+from ...surface.mesh import Floats, Ints, TriangleMesh, vertex_normals
 from ...surface.orientation import reversed_where, wrongly_wound
 from ...surface.ties import CHOICE
 from .moments import Moments, moments_of, point_areas
@@ -82,9 +82,7 @@ class SpectralShape:
     @cached_property
     def normals(self) -> Floats:
         """(n, 3) unit normal at each point."""
-        around = np.repeat(self.area_vectors, 3, axis=0)
-        sums = [np.bincount(self.triangles.ravel(), column, len(self.positions)) for column in around.T]
-        return unit_rows(np.stack(sums, axis=1))
+        return vertex_normals(self.triangles, self.area_vectors, len(self.positions))
 
     @cached_property
     def moments(self) -> Moments:

@@ -5,8 +5,10 @@ from numpy.typing import NDArray
 
 from ...surface.mesh import Bools, Ints
 from ..faces.face_graph import FaceGraph
-from .least_cut import N_RINGS, STRAYING, least_cut
+from .least_cut import STRAYING, least_cut
 
+# How many rings of faces a border may move.
+N_RINGS = 4
 # On which side the faces at a jagged border itself lie says little: this share of what it says of others.
 JAGGED = 0.1
 

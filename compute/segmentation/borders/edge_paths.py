@@ -19,8 +19,11 @@ from ..faces.branches import connected_branches
 from ..faces.face_graph import FaceGraph
 from ..faces.part_tree import PartTree
 from ..hierarchy.arc_tree import NO_ARC, ArcTree
-from .least_cut import N_RINGS, STRAYING, least_cut
+from .creases import crease_costs
+from .least_cut import STRAYING, least_cut
 
+# How many rings of faces a border may move.
+N_RINGS = 12
 # How much more an edge costs that runs straight up or down the field than one along a level set: one line of edges
 # costs less than a staircase.
 SLANT = 2.0
@@ -49,8 +52,10 @@ class _FaceRows:
         return self._order[self._start[faces][owner] + step], owner
 
 
-def field_lengths(surface: Surface, field: ScalarField) -> Floats:
-    """Return (P,) the length of the edge that each pair of neighbouring triangles shares, more across level sets.
+def border_costs(surface: Surface, field: ScalarField) -> Floats:
+    """Return (P,) the length of the edge that each pair of neighbouring triangles shares, as far as a border counts it.
+
+    It is longer across level sets, and shorter in creases.
 
     Parameters
     ----------
@@ -65,7 +70,7 @@ def field_lengths(surface: Surface, field: ScalarField) -> Floats:
     steepest = length * steepness[mesh.edges.neighbours].mean(axis=1)
     rise = np.abs(heights[ends[:, 1]] - heights[ends[:, 0]])
     slant = np.minimum(1.0, np.divide(rise, steepest, out=np.zeros_like(rise), where=steepest > 0))
-    return length * (1 + SLANT * slant**2)
+    return length * (1 + SLANT * slant**2) * crease_costs(mesh, N_RINGS)
 
 
 def _steepness(corners: Floats, heights: Floats) -> Floats:
@@ -77,7 +82,7 @@ def _steepness(corners: Floats, heights: Floats) -> Floats:
     return np.divide(across, area, out=np.zeros_like(area), where=area > 0)
 
 
-def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, length: Floats) -> PartTree:
+def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, cost: Floats) -> PartTree:
     """Return a part tree whose parts end at short lines of edges near their level sets.
 
     Every part keeps the faces that are farthest from its borders.
@@ -89,7 +94,7 @@ def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, l
     shares : list of ArcAreas
         For each tree, the exact shares of the faces.
     graph : FaceGraph
-    length : (P,) float64
+    cost : (P,) float64
         What it costs if a border runs between two neighbours of the graph.
 
     References
@@ -98,7 +103,7 @@ def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, l
        the least sum of a set's perimeter and of its difference from a given one.
     """
     shown = [
-        _Borders(tree, is_end & tree.has_saddle, arc.copy(), share, graph, length).moved()[graph.stands_for]
+        _Borders(tree, is_end & tree.has_saddle, arc.copy(), share, graph, cost).moved()[graph.stands_for]
         for tree, is_end, arc, share in zip(
             part_tree.trees, part_tree.ends, part_tree.arcs_of_faces, shares, strict=True
         )
@@ -115,7 +120,7 @@ class _Borders:
     arc: Ints
     shares: ArcAreas
     graph: FaceGraph
-    length: Floats
+    cost: Floats
 
     @cached_property
     def _neighbours(self) -> _FaceRows:
@@ -202,7 +207,7 @@ class _Borders:
         radius = self.graph.length[crossing].sum() / (2 * np.pi)
         gain = STRAYING / radius * self.graph.area[band] * (2 * self._share_inside(band, inside) - 1)
         new = least_cut(
-            place[self.graph.neighbours[pairs]], self.length[pairs], stays & is_inside, stays & ~is_inside, gain
+            place[self.graph.neighbours[pairs]], self.cost[pairs], stays & is_inside, stays & ~is_inside, gain
         )
         return band[new & ~is_inside], band[is_inside & ~new]
 

@@ -6,8 +6,6 @@ from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
 from ...surface.mesh import Bools, Floats, Ints
 
-# How many rings of faces a border may move.
-N_RINGS = 4
 # What it costs to leave an area to the other side of its border: this over the radius of a circle as long as the
 # border, so that a border may move by a part of the limb it runs around, whatever its size.
 STRAYING = 2.0

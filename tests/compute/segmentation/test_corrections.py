@@ -168,8 +168,9 @@ def test_every_face_has_a_label_and_areas_add_up(arms):
 
 @pytest.fixture(scope="module")
 def two_orders():
+    """Parts are tracked by their exact faces, wherever borders are shown."""
     mesh = star(5, 3)
-    return analyze(mesh, order=1), analyze(mesh, order=3)
+    return analyze(mesh, order=1, borders="exact"), analyze(mesh, order=3, borders="exact")
 
 
 def test_no_corrections_change_nothing(two_orders):

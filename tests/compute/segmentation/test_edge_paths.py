@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 
 from compute import MODES, analyze, label_branches, skeleton
 from compute.errors import MeshError
+from compute.segmentation.borders.creases import crease_costs
 from compute.surface.mesh import TriangleMesh, connected_pieces
 from tests.shapes import icosphere, joined, lathe, star
 
@@ -71,7 +72,8 @@ def test_labels_are_nested_as_the_arcs_are(trees):
 
 def test_few_faces_change_their_part(trees):
     before, after = (label_branches(trees[borders]).of_faces(trees[borders]) for borders in ("exact", "edges"))
-    assert 0 < (before != after).mean() < 0.05
+    # Borders move into the creases around the arms.
+    assert 0 < (before != after).mean() < 0.1
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -105,6 +107,46 @@ def test_borders_of_a_symmetric_shape_are_symmetric():
         distance, image = cKDTree(centres).query(centres * flip)
         assert distance.max() < 1e-9
         assert len(np.unique(np.stack([labels, labels[image]]), axis=1).T) == 5
+
+
+@pytest.fixture(scope="module")
+def ball_with_steep_arms():
+    """A ball with five arms that begin at a crease, and which faces lie in the arms."""
+    ball = icosphere(4)
+    axes = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]])
+    angle = np.arccos(np.clip((ball.vertices @ axes.T).max(axis=1), -1, 1))
+    height = np.clip((0.55 - angle) / 0.3, 0, 1)
+    mesh = TriangleMesh(ball.vertices * (1 + height**2 * (3 - 2 * height))[:, None], ball.triangles)
+    return mesh, angle[mesh.triangles].mean(axis=1) < 0.55
+
+
+def test_borders_settle_in_creases(ball_with_steep_arms):
+    mesh, is_in_arm = ball_with_steep_arms
+    wrong = {
+        borders: mesh.areas @ ((analyze(mesh, borders=borders).segment().labels > 0) != is_in_arm)
+        for borders in ("edges", "exact")
+    }
+    assert wrong["exact"] > 0.1 * mesh.areas[is_in_arm].sum()
+    assert wrong["edges"] < 0.03 * mesh.areas[is_in_arm].sum()
+
+
+def test_a_crease_is_one_whichever_way_faces_are_wound(ball_with_steep_arms):
+    mesh, _ = ball_with_steep_arms
+    wound = np.random.default_rng(1).random(len(mesh.triangles)) < 0.5
+    mixed = TriangleMesh(mesh.vertices, np.where(wound[:, None], mesh.triangles[:, ::-1], mesh.triangles))
+    np.testing.assert_array_equal(analyze(mixed).segment().labels, analyze(mesh).segment().labels)
+
+
+def test_creases_cost_less_and_ridges_do_not():
+    """A wavy cylinder: edges around it cost less in its valleys than elsewhere."""
+    along = np.linspace(0, 4 * np.pi, 161)
+    mesh = lathe(np.stack([2 + 0.5 * np.cos(2 * along), along], axis=1), 80)
+    costs = crease_costs(mesh, n_rings=80)
+    middle = mesh.vertices[mesh.edges.vertices[mesh.edges.shared]].mean(axis=1)
+    radius = np.linalg.norm(middle[:, :2], axis=1)
+    assert (costs[radius > 2.1] == 1).all()
+    assert costs[radius < 1.55].min() < 0.8
+    assert (crease_costs(mesh, n_rings=0) == 1).all()
 
 
 def test_borders_follow_rings_of_edges():
