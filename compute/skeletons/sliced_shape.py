@@ -17,7 +17,7 @@ from ..surface.ties import first_nearest
 from .interior import Interior
 from .slices import Slices, centres_at_rest, centres_in_pose, slice_arcs
 
-ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level."
+ONE_PART = "The mesh is one part at this level, so there are no limbs to put bones in; choose another level or mode."
 
 
 @dataclass(frozen=True, eq=False)

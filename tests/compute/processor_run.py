@@ -15,7 +15,8 @@ def results_of(name, vertices, triangles):
     n_levels = min(analysis.hierarchy.n_levels, analysis.hierarchy.default_level + 3)
     parts = [analysis.segment(level=level, mode=mode).labels for level in range(n_levels) for mode in MODES]
     partner = mirror_parts(analysis, analysis.segment(mode="nested").labels)
-    bones = [skeleton(analysis, mode=mode, partner=partner, n_pieces=2) for mode in MODES]
+    limbs = [mode for mode in MODES if analysis.segment(mode=mode).n_parts > 1]
+    bones = [skeleton(analysis, mode=mode, partner=partner, n_pieces=2) for mode in limbs]
     return {
         f"{name} parts": np.stack(parts),
         f"{name} twins": np.array(partner),

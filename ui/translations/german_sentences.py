@@ -76,6 +76,9 @@ GERMAN_SENTENCES: dict[str, str] = {
     "The loose parts have no features: each is one part.": "Die losen Teile haben keine Merkmale: jedes ist ein Teil.",
     "No loose part has enough faces to be divided by itself.": "Kein loses Teil hat genug Flächen, um für sich geteilt zu werden.",
     "The shape has no features: it is one part.": "Die Gestalt hat keine Merkmale: sie ist ein Teil.",
+    'No part stands out, so all is one part; the mode "Features" divides it nevertheless.': (
+        "Kein Teil hebt sich ab, alles ist ein Teil; der Modus „Merkmale“ teilt trotzdem."
+    ),
     "Something went wrong that should not ({}). Copy Bug Report has the details; please report it.": "Etwas ging schief, das nicht sollte ({}). „Fehlerbericht kopieren“ hat die Einzelheiten; bitte melden.",
     "The bug report is on the clipboard; paste it where you report the problem.": "Der Fehlerbericht ist in der Zwischenablage; dort einfügen, wo das Problem gemeldet wird.",
     "No mesh is active.": "Kein Netz ist aktiv.",
@@ -210,7 +213,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     '{}: the seams of "{}" could not be kept, there are too many pieces.': "{}: die Nähte von „{}“ ließen sich nicht erhalten, es sind zu viele Stücke.",
     "{} was analyzed and keeps its own parts; Register Selected gives it those of {}.": "{} wurde analysiert und behält seine eigenen Teile; „Auswahl registrieren“ gibt ihm die von {}.",
     # Skeleton.
-    "The mesh is one part at this level, so there are no limbs to put bones in; choose a higher level.": "Das Netz ist auf dieser Stufe ein Teil, es gibt also keine Glieder für Knochen; eine höhere Stufe wählen.",
+    "The mesh is one part at this level, so there are no limbs to put bones in; choose another level or mode.": "Das Netz ist auf dieser Stufe ein Teil, es gibt also keine Glieder für Knochen; eine andere Stufe oder einen anderen Modus wählen.",
     "The parts of this level are too short for bones; choose another level.": "Die Teile dieser Stufe sind zu kurz für Knochen; eine andere Stufe wählen.",
     "The mesh has {} loose parts; the bones lie in {} of them, the others follow what is next to them.": "Das Netz hat {} lose Teile; die Knochen liegen in {} davon, die anderen folgen dem, was neben ihnen liegt.",
     "The shape has {}; bones are a tree, so they are open at one end there.": "Die Gestalt hat Henkel ({}); Knochen sind ein Baum, darum sind sie dort an einem Ende offen.",

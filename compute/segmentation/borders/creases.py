@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...surface.cleaning import Surface
 from ...surface.heat_smoothing import WIDTH_OF_UNIT_TIME, smoothed
 from ...surface.mesh import Floats, TriangleMesh, area_vectors, unit_rows, vertex_normals
 from ...surface.orientation import outward_triangles
@@ -17,7 +18,7 @@ HALVING_CURVATURE = 15.0
 LEAST_COST = 0.1
 
 
-def crease_costs(mesh: TriangleMesh, n_rings: int) -> Floats:
+def crease_costs(surface: Surface, n_rings: int) -> Floats:
     """Return (P,) what a border costs along the edge that each pair of neighbouring triangles shares.
 
     It is 1 where the surface is flat or bulges, and falls with the curvature across the edge where it is concave. Where
@@ -25,7 +26,8 @@ def crease_costs(mesh: TriangleMesh, n_rings: int) -> Floats:
 
     Parameters
     ----------
-    mesh : TriangleMesh
+    surface : Surface
+        Shells that are analyzed each by itself have creases in proportion to their own size.
     n_rings : int
         How many rings of triangles a border may move.
 
@@ -33,6 +35,18 @@ def crease_costs(mesh: TriangleMesh, n_rings: int) -> Floats:
     ----------
     .. [1] Hoffman, Richards, "Parts of Recognition", Cognition 1984: the minima rule.
     """
+    mesh = surface.mesh
+    if not surface.is_apart:
+        return _costs(mesh, n_rings)
+    costs, shell = np.ones(len(mesh.edges.shared)), mesh.component_of_triangle
+    of_pair = shell[mesh.edges.neighbours[:, 0]]
+    for number in range(int(shell.max()) + 1):
+        used, corners = np.unique(mesh.triangles[shell == number], return_inverse=True)
+        costs[of_pair == number] = _costs(TriangleMesh(mesh.vertices[used], corners.reshape(-1, 3)), n_rings)
+    return costs
+
+
+def _costs(mesh: TriangleMesh, n_rings: int) -> Floats:
     size = np.sqrt(mesh.areas.sum())
     edges = mesh.edges
     length = np.linalg.norm(np.diff(mesh.vertices[edges.vertices], axis=1), axis=2).mean()

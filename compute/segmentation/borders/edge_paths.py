@@ -24,6 +24,9 @@ from .least_cut import STRAYING, least_cut
 
 # How many rings of faces a border may move.
 N_RINGS = 12
+# A border that would take more than this share of a part away, as of a blunt one on which it is the shorter the higher
+# it lies, is held back by these factors, and stays at the level set if none is enough.
+MOST_LOST, HOLDS = 1 / 3, (1, 2, 4)
 # How much more an edge costs that runs straight up or down the field than one along a level set: one line of edges
 # costs less than a staircase.
 SLANT = 2.0
@@ -70,7 +73,7 @@ def border_costs(surface: Surface, field: ScalarField) -> Floats:
     steepest = length * steepness[mesh.edges.neighbours].mean(axis=1)
     rise = np.abs(heights[ends[:, 1]] - heights[ends[:, 0]])
     slant = np.minimum(1.0, np.divide(rise, steepest, out=np.zeros_like(rise), where=steepest > 0))
-    return length * (1 + SLANT * slant**2) * crease_costs(mesh, N_RINGS)
+    return length * (1 + SLANT * slant**2) * crease_costs(surface, N_RINGS)
 
 
 def _steepness(corners: Floats, heights: Floats) -> Floats:
@@ -206,10 +209,13 @@ class _Borders:
         pairs = rows[(rows % 2 == 0) & (place[self.graph.neighbours[rows // 2, 1]] >= 0)] // 2
         radius = self.graph.length[crossing].sum() / (2 * np.pi)
         gain = STRAYING / radius * self.graph.area[band] * (2 * self._share_inside(band, inside) - 1)
-        new = least_cut(
-            place[self.graph.neighbours[pairs]], self.cost[pairs], stays & is_inside, stays & ~is_inside, gain
-        )
-        return band[new & ~is_inside], band[is_inside & ~new]
+        most_lost = MOST_LOST * self.graph.area @ (inside & ~is_fixed)[self.arc]
+        ends, cost = place[self.graph.neighbours[pairs]], self.cost[pairs]
+        for hold in HOLDS:
+            new = least_cut(ends, cost, stays & is_inside, stays & ~is_inside, hold * gain)
+            if self.graph.area[band] @ (is_inside & ~new) <= most_lost:
+                return band[new & ~is_inside], band[is_inside & ~new]
+        return crossing[:0], crossing[:0]
 
     def _share_inside(self, band: Ints, inside: Bools) -> Floats:
         """Return the share of some faces that lies on the arcs inside."""

@@ -29,7 +29,8 @@ class ArcMeasures:
         Length of the level set where the arc closes and at its longest inside; 0 where it was not worth measuring.
     roundness : (A,) float64
         The least length²/area of all level sets from the leaf to where the arc closes, area being what they cut off:
-        4 pi for a flat disk, 2 pi for a hemisphere, less for a longer protrusion; 0 where it was not worth measuring.
+        4 pi for a flat disk, 2 pi for a hemisphere, less for a longer protrusion; where an arc was not worth measuring,
+        that of the last one before it, 0 if none was.
     """
 
     height: Floats
@@ -82,8 +83,13 @@ def _level_sets(
 def _roundness(part: Ints, length: Floats, area: Floats) -> Floats:
     """Return the least length²/area of the level sets between each arc's leaf and its end, tips left out."""
     roundness = np.zeros(len(part))
-    for arc in np.flatnonzero(area[:, 0]).tolist():
-        on_path = part[: arc + 1] == part[arc]
+    last: dict[int, int] = {}
+    for arc, leaf in enumerate(part.tolist()):
+        if not area[arc, 0]:
+            roundness[arc] = roundness[last[leaf]] if leaf in last else 0.0
+            continue
+        last[leaf] = arc
+        on_path = part[: arc + 1] == leaf
         lengths, areas = length[: arc + 1][on_path], area[: arc + 1][on_path]
         counted = areas > TIP * area[arc, 0]
         roundness[arc] = (lengths[counted] ** 2 / areas[counted]).min()

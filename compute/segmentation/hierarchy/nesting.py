@@ -15,6 +15,9 @@ LEAST_AREA = 0.05
 # A feature is worth a part if its roundness is below this: the least length²/area of its level sets, area being what
 # they cut off, its tip left out. A hemisphere has 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
 BLUNT = 4.4
+# Two features that leave less than this share of the area between them are the two ends of one thing, as of a rod or an
+# egg, unless each side widens from where they meet by more than the second number.
+BELT, WAIST = 0.2, 0.9
 # Beyond the default level, who asks for more features gets all whose roundness is less than that of a hemisphere.
 HEMISPHERE = 2 * np.pi
 
@@ -97,7 +100,23 @@ def _worthy_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, candidates:
             else:
                 is_cut[arc] = measures.roundness[arc] < BLUNT
         has_cut_inside[parent] = (has_cut_inside | is_cut)[meeting].any()
+    is_cut[_two_ends(tree, measures, area, candidates)] = False
     return _with_a_body(tree, is_cut, is_cut & has_cut_inside, area)
+
+
+def _two_ends(tree: ArcTree, measures: ArcMeasures, area: Floats, candidates: Bools) -> list[int]:
+    """Return the arcs of features that are only the two ends of their shell: nothing tells where to cut it."""
+    shell = tree.spread(np.where(tree.is_shell, np.arange(1, len(area) + 1), 0))
+    found: list[int] = []
+    for number in np.unique(shell[candidates]).tolist():
+        ends = np.flatnonzero(candidates & (shell == number)).tolist()
+        if len(ends) != 2 or tree.parent[ends[0]] != tree.parent[ends[1]]:
+            continue
+        inside = tree.subtree(ends[0]) | tree.subtree(ends[1])
+        narrowest = measures.longest[ends] * WAIST
+        if area[(shell == number) & ~inside].sum() < BELT and (measures.closing_length[ends] > narrowest).any():
+            found += ends
+    return found
 
 
 def _meeting_arcs(parent: Ints) -> list[tuple[int, list[int]]]:

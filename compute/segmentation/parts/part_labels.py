@@ -18,6 +18,9 @@ from ..faces.part_tree import PartTree
 BODY = 0
 
 
+NOTHING_STANDS_OUT = 'No part stands out, so all is one part; the mode "Features" divides it nevertheless.'
+
+
 @dataclass(frozen=True, eq=False)
 class Parts:
     """The parts of a segmentation, one row each, the body first if it has faces.
@@ -159,7 +162,10 @@ def label_branches(
         return _reach_number(at_level, hierarchy.n_levels, n_parts)
     if level is None:
         level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
-    return at_level(hierarchy.checked_level(level))
+    labels = at_level(hierarchy.checked_level(level))
+    if mode == NESTED and labels.level >= max(1, hierarchy.default_level) and len(labels.parts) == 1:
+        return replace(labels, warnings=(NOTHING_STANDS_OUT,))
+    return labels
 
 
 def _at_level(part_tree: PartTree, mode: str, corrections: Corrections, level: int) -> BranchLabels:

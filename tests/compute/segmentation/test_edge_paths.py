@@ -7,7 +7,9 @@ from scipy.spatial import cKDTree
 from compute import MODES, analyze, label_branches, skeleton
 from compute.errors import MeshError
 from compute.segmentation.borders.creases import crease_costs
+from compute.surface.cleaning import clean_surface
 from compute.surface.mesh import TriangleMesh, connected_pieces
+from tests.compute.registration.shapes import lumpy_ball
 from tests.shapes import icosphere, joined, lathe, star
 
 
@@ -141,12 +143,21 @@ def test_creases_cost_less_and_ridges_do_not():
     """A wavy cylinder: edges around it cost less in its valleys than elsewhere."""
     along = np.linspace(0, 4 * np.pi, 161)
     mesh = lathe(np.stack([2 + 0.5 * np.cos(2 * along), along], axis=1), 80)
-    costs = crease_costs(mesh, n_rings=80)
+    costs = crease_costs(clean_surface(mesh), n_rings=80)
     middle = mesh.vertices[mesh.edges.vertices[mesh.edges.shared]].mean(axis=1)
     radius = np.linalg.norm(middle[:, :2], axis=1)
     assert (costs[radius > 2.1] == 1).all()
     assert costs[radius < 1.55].min() < 0.8
-    assert (crease_costs(mesh, n_rings=0) == 1).all()
+    assert (crease_costs(clean_surface(mesh), n_rings=0) == 1).all()
+
+
+def test_blunt_parts_keep_two_thirds_of_their_area():
+    """On a lump the border is the shorter the higher it lies; it must not close over the tip."""
+    analysis = analyze(lumpy_ball())
+    for level in range(1, analysis.hierarchy.n_levels):
+        shown = analysis.segment(level=level, mode="features").labels
+        whole = np.bincount(analysis.exact_labels(shown), analysis.mesh.areas)
+        assert (np.bincount(shown, analysis.mesh.areas, len(whole)) > 0.6 * whole).all()
 
 
 def test_borders_follow_rings_of_edges():

@@ -1,0 +1,82 @@
+"""Shapes in which no part stands out are one part; those that have a neck or arms are divided."""
+
+import numpy as np
+import pytest
+
+from compute import analyze
+from compute.segmentation.parts.part_labels import NOTHING_STANDS_OUT
+from compute.surface.mesh import TriangleMesh
+from tests.shapes import icosphere, lathe, star
+
+BALL = icosphere(4)
+CUBE = BALL.vertices / np.abs(BALL.vertices).max(axis=1, keepdims=True)
+ROUND = np.maximum(np.linalg.norm(BALL.vertices[:, :2], axis=1), np.abs(BALL.vertices[:, 2]))
+CYLINDER = BALL.vertices / ROUND[:, None]
+
+
+def turned(radius, height):
+    """A closed body of revolution."""
+    profile = np.stack([np.r_[0, radius, 0], np.r_[height[0], height, height[-1]]], axis=1)
+    return lathe(profile, 48)
+
+
+def gear(n_teeth):
+    wheel = CYLINDER * [1, 1, 0.25]
+    wave = np.tanh(4 * np.sin(n_teeth * np.arctan2(wheel[:, 1], wheel[:, 0])))
+    rim = np.clip(np.linalg.norm(wheel[:, :2], axis=1) * 3 - 2, 0, 1)
+    return wheel * np.stack([1 + 0.15 * wave * rim] * 2 + [np.ones(len(wheel))], axis=1)
+
+
+ALONG = np.linspace(0, 1, 60)
+ONE_PART = {
+    "box": CUBE * [3, 1, 1],
+    "brick": CUBE * [2, 1, 0.6],
+    "cube": CUBE,
+    "plate": CUBE * [2, 1.5, 0.1],
+    "rod": CYLINDER * [0.2, 0.2, 1],
+    "disk": CYLINDER * [1, 1, 0.2],
+    "ellipsoid": BALL.vertices * [2, 0.5, 1],
+    "gear": gear(16),
+    "small gear": gear(8),
+    "dented ball": BALL.vertices * (1 - 0.7 * np.exp(-12 * (1 - BALL.vertices[:, 2:]))),
+}
+
+
+@pytest.mark.parametrize("name", ONE_PART)
+def test_a_shape_without_clear_parts_is_one_part_and_says_so(name):
+    segmentation = analyze(TriangleMesh(ONE_PART[name], BALL.triangles)).segment()
+    assert segmentation.n_parts == 1
+    assert segmentation.warnings == ((NOTHING_STANDS_OUT,) if segmentation.level else ())
+
+
+def test_an_egg_and_a_cone_are_one_part():
+    egg = turned(np.sqrt(np.maximum(1 - (2 * ALONG - 1) ** 2, 1e-3)) * (0.36 + 0.12 * ALONG), 1.2 * ALONG)
+    assert analyze(egg).segment().n_parts == 1
+    assert analyze(turned(0.5 * (1 - ALONG) + 0.01, ALONG)).segment().n_parts == 1
+
+
+def test_its_ends_are_features_nevertheless():
+    rod = analyze(TriangleMesh(ONE_PART["rod"], BALL.triangles))
+    assert rod.segment(mode="features").n_parts >= 2
+    assert rod.segment(mode="features").warnings == ()
+
+
+def test_a_waist_divides_what_a_rod_does_not():
+    waisted = turned(np.sqrt(0.04 + 0.6 * (ALONG - 0.5) ** 2), ALONG)
+    segmentation = analyze(waisted).segment()
+    sizes = segmentation.parts.area / segmentation.parts.area.sum()
+    assert (sizes > 0.4).sum() == 2
+    assert segmentation.warnings == ()
+
+
+def test_arms_that_meet_in_a_ball_are_parts():
+    assert analyze(star(3, 3)).segment().n_parts >= 3
+
+
+def test_two_pieces_are_judged_each_by_itself():
+    rod, waisted = ONE_PART["rod"], turned(np.sqrt(0.04 + 0.6 * (ALONG - 0.5) ** 2), ALONG)
+    places = np.vstack([rod, waisted.vertices + np.array([3, 0, 0])])
+    both = TriangleMesh(places, np.vstack([BALL.triangles, waisted.triangles + len(rod)]))
+    labels = analyze(both, shells="separate").segment().labels
+    assert len(np.unique(labels[: len(BALL.triangles)])) == 1
+    assert len(np.unique(labels[len(BALL.triangles) :])) > 1
