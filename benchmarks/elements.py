@@ -68,7 +68,7 @@ def main() -> int:
     sys.stdout.write(f"numpy {np.__version__}, scipy {scipy.__version__}, Python {platform.python_version()}\n\n")
     if options.data is None:
         sys.stdout.write("Without --data only the example characters are measured.\n\n")
-    found = [*_examples(), *(_files(options.data) if options.data else ())]
+    found = [*_examples(), *(files(options.data) if options.data else ())]
     rows = [row for place in found if (row := _measured(*place, options.largest)) is not None]
     sys.stdout.write(_by_estimate(rows) + "\n" + _by_family(rows) + "\n" + _below(rows))
     return 0
@@ -85,7 +85,8 @@ def _examples() -> Iterator[tuple[str, str, str, TriangleMesh]]:
             yield "examples", f"examples/{name}", f"{name} {n_vertices}", mesh
 
 
-def _files(data: Path) -> Iterator[tuple[str, str, str, TriangleMesh]]:
+def files(data: Path) -> Iterator[tuple[str, str, str, TriangleMesh]]:
+    """Yield family, character, name and mesh of every file below a folder that can be read."""
     for path in sorted((*data.rglob("*.off"), *data.rglob("*.obj"))):
         family = path.relative_to(data).parts[0]
         # Poses of a character, and scans of people, are told apart by numbers.
@@ -106,8 +107,8 @@ def _measured(family: str, character: str, name: str, mesh: TriangleMesh, larges
     except EngineError as error:
         sys.stdout.write(f"Skipped: {name}: {error}\n")
         return None
-    levels = _finer_levels(cubic)
-    same = [_same(linear, cubic, level) for level in (cubic.hierarchy.default_level, *levels)]
+    levels = finer_levels(cubic)
+    same = [same_parts(linear, cubic, level) for level in (cubic.hierarchy.default_level, *levels)]
     return Row(
         *(family, character, name, len(cubic.surface.mesh.used), _estimate(linear)),
         *(same[0], float(np.mean(same[1:] or same)), cpu_linear, cpu_cubic),
@@ -130,12 +131,14 @@ def _estimate(linear: Analysis) -> float:
     return float(relative_excess(problem, basis.values * area, basis.functions * np.sqrt(area)).max())
 
 
-def _finer_levels(cubic: Analysis) -> range:
+def finer_levels(cubic: Analysis) -> range:
+    """Return the levels beyond the default one that keep features of 1 % of the range."""
     hierarchy = cubic.hierarchy
     return range(hierarchy.default_level + 1, hierarchy.level_of_threshold(LEAST_FEATURE) + 1)
 
 
-def _same(linear: Analysis, cubic: Analysis, level: int) -> float:
+def same_parts(linear: Analysis, cubic: Analysis, level: int) -> float:
+    """Return the share of the area on which two analyses give the same part at a level of the second one."""
     own = linear.hierarchy.default_level if level == cubic.hierarchy.default_level else level
     own = min(own, linear.hierarchy.n_levels - 1)
     return agreement(linear.segment(level=own).labels, cubic.segment(level=level).labels, cubic.mesh.areas)

@@ -35,6 +35,7 @@ class Benchmark:
 BENCHMARKS = {
     "spectrum": Benchmark(quick="--sizes 5000 10000 --pairs 10 --repeats 1"),
     "elements": Benchmark(quick=""),
+    "levels": Benchmark(quick="--sizes 50000"),
     "topology": Benchmark("", "--largest 10000"),
     "segmentation": Benchmark(),
     "robustness": Benchmark(),

@@ -11,7 +11,7 @@ from ..memory import told_if_full
 from ..progress import Progress, silent
 from ..surface.cleaning import Surface, clean_surface
 from ..surface.mesh import Bools, Floats, Ints, TriangleMesh
-from .assembly import mass_matrix
+from .assembly import assemble, element_mass
 from .degenerate import fixed_basis
 from .eigensolver import EigenPairs, EigenProblem, eigen_problem, lowest_eigenpairs
 from .order_choice import require_functions
@@ -173,7 +173,7 @@ def basis_of_pairs(
     if not values[0] > LEAST_VALUE:
         raise SpectrumError("The faces are collapsed or barely hang together; merge the vertices by distance first.")
     kept = values <= wanted.largest_ratio * values[0]
-    mass = mass_matrix(space)
+    mass = assemble(space.elements, element_mass(problem.metric, space.element), space.n_unknowns)
     functions = fixed_basis(values[kept], functions[:, kept], mass, space.nodes / np.sqrt(area))
     progress(1.0, "Eigenfunctions found")
     n_vertices = len(surface.vertex_of_input)

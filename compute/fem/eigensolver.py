@@ -139,7 +139,7 @@ def lowest_eigenpairs(
         return _plain_eigenpairs(problem, wanted, progress)
     values, functions = start or linear_eigenpairs(problem.linear, wanted, section(progress, 0.0, 0.15))
     # One function more than needed shows that none is missing.
-    n_pairs = min(_excessive(wanted).n_within(values) + 1, len(values))
+    n_pairs = min(excessive(wanted).n_within(values) + 1, len(values))
     width = max(LEAST_WIDTH, _multiplicity(values[:n_pairs]) + 1)
     mixed = functions[:, :n_pairs] @ _mixture(n_pairs, width)
     return _block_eigenpairs(problem, mixed, values[:n_pairs], section(progress, 0.15, 1.0))
@@ -147,10 +147,11 @@ def lowest_eigenpairs(
 
 def linear_eigenpairs(problem: EigenProblem, wanted: WantedPairs, progress: Progress) -> EigenPairs:
     """Return the pairs of linear elements from which those of a higher order are found that are wanted."""
-    return _plain_eigenpairs(problem, _excessive(wanted), progress)
+    return _plain_eigenpairs(problem, excessive(wanted), progress)
 
 
-def _excessive(wanted: WantedPairs) -> WantedPairs:
+def excessive(wanted: WantedPairs) -> WantedPairs:
+    """Return the pairs of linear elements among which are those of a higher order that are wanted."""
     return replace(wanted, largest_ratio=LINEAR_EXCESS * wanted.largest_ratio)
 
 

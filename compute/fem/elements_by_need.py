@@ -2,11 +2,13 @@
 
 import numpy as np
 
+from ..errors import SpectrumError
 from ..progress import Progress, section
 from ..surface.cleaning import Surface
 from .eigenbasis import Eigenbasis, basis_of_pairs, posed_problem, wanted_pairs
 from .eigensolver import DENSE_SHARE, EigenPairs, EigenProblem, linear_eigenpairs, lowest_eigenpairs
 from .linear_error import relative_excess
+from .multilevel_eigenpairs import is_for_levels, multilevel_eigenpairs
 from .order_choice import choose_order
 from .shift_invert import WantedPairs
 
@@ -40,13 +42,23 @@ def solve_by_need(
     start = None
     if len(surface.mesh.used) >= max(LEAST_VERTICES, wanted.at_most / DENSE_SHARE):
         linear = posed_problem(surface, n_functions, 1, boundary)
-        start = linear_eigenpairs(linear, wanted, section(progress, 0.0, 0.15))
+        start = linear_pairs(linear, wanted, section(progress, 0.0, 0.15))
         is_enough = _largest_excess(linear, wanted, start) <= LARGEST_EXCESS
         if is_enough or best.order == 1:
             return basis_of_pairs(surface, linear, wanted, start, progress), None if is_enough else best.warning
     problem = posed_problem(surface, n_functions, best.order, boundary)
     pairs = lowest_eigenpairs(problem, wanted, progress, start)
     return basis_of_pairs(surface, problem, wanted, pairs, progress), best.warning
+
+
+def linear_pairs(linear: EigenProblem, wanted: WantedPairs, progress: Progress) -> EigenPairs:
+    """Return the pairs of linear elements: by way of coarser levels where that is faster and converges."""
+    if is_for_levels(linear, wanted):
+        try:
+            return multilevel_eigenpairs(linear, wanted, progress)
+        except (SpectrumError, np.linalg.LinAlgError):
+            pass  # What has no good levels is factored.
+    return linear_eigenpairs(linear, wanted, progress)
 
 
 def _largest_excess(linear: EigenProblem, wanted: WantedPairs, pairs: EigenPairs) -> float:

@@ -28,16 +28,18 @@ def relative_excess(problem: EigenProblem, values: Floats, functions: Floats) ->
     .. [1] Bank and Smith, "A posteriori error estimates based on hierarchical bases", SIAM J. Numer. Anal. 1993.
     """
     mesh, shape = problem.space.mesh, problem.metric
-    stiffness = element_stiffness(shape, reference_element(1))
+    # Corners in rows, which are several times as fast as many rows of three.
+    corners = np.ascontiguousarray(mesh.triangles.T)
+    stiffness = np.ascontiguousarray(element_stiffness(shape, reference_element(1)).transpose(1, 2, 0))
     # Edges of a triangle are ab, bc, ca; the one that is opposite to a, b, c each.
-    opposite = mesh.edges.of_triangle[:, [1, 2, 0]]
+    opposite = np.ascontiguousarray(mesh.edges.of_triangle[:, [1, 2, 0]].T)
     is_free = (mesh.edges.n_triangles > 1) | problem.is_free[mesh.edges.vertices].any(axis=1)
-    energy = _on_edges(np.repeat(np.trace(stiffness, axis1=1, axis2=2)[:, None], 3, axis=1) * 4 / 3, opposite)
+    energy = _on_edges(np.tile(np.trace(stiffness) * 4 / 3, (3, 1)), opposite)
     excess = np.zeros(len(values))
-    for number, value in enumerate(values.tolist()):
-        corners = functions[mesh.triangles, number]
-        load = value * shape.doubled_areas[:, None] / 30 * (2 * corners.sum(axis=1)[:, None] - corners)
-        residual = _on_edges(load + 4 / 3 * np.einsum("tij,tj->ti", stiffness, corners), opposite)
+    for number, (value, function) in enumerate(zip(values.tolist(), functions.T.copy(), strict=True)):
+        at_corners = function[corners]
+        load = value * shape.doubled_areas / 30 * (2 * at_corners.sum(axis=0) - at_corners)
+        residual = _on_edges(load + 4 / 3 * np.einsum("ijt,jt->it", stiffness, at_corners), opposite)
         excess[number] = np.sum(residual[is_free] ** 2 / energy[is_free]) / value
     return excess
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from compute.fem import assembly, eigensolver, elements_by_need, order_choice
+from compute.fem import assembly, eigensolver, elements_by_need, multilevel_eigenpairs, order_choice
 from compute.fields import scalar_field, shell_fields
 from compute.registration.dense import by_shape, confidence, deformation_graph, nonrigid_alignment, point_map, transfer
 from compute.registration.eigenfunctions import confidence as map_confidence
@@ -67,6 +67,10 @@ DECISIONS = {
         "unknown": f"({order_choice.BYTES_PER_UNKNOWN / 1000:g} kB an unknown)",
         "error of linear elements": f"eigenvalues is at most {elements_by_need.LARGEST_EXCESS:g}",
         "least vertices": f"from {elements_by_need.LEAST_VERTICES} vertices on",
+    },
+    "coarser_levels": {
+        "unknowns": f"From {multilevel_eigenpairs.LEAST_UNKNOWNS:,} unknowns on",
+        "pairs": f"up to {multilevel_eigenpairs.MOST_PAIRS} pairs",
     },
     "own_elimination_order": {"width": f"block Lanczos, {IN_WORDS[eigensolver.LEAST_WIDTH]} functions at a time"},
     "diffusion_field": {
