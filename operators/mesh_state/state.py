@@ -122,9 +122,14 @@ class MeshState:
 
     @cached_property
     def mode(self) -> str:
-        """The mode the mesh was last divided in, the default one if it never was."""
+        """How levels were last read, with or without joints; in the default mode if they never were."""
         mode = self.get(schema.MODE)
-        return mode if mode in compute.MODES else compute.MODES[0]
+        return mode if mode in compute.READINGS else compute.READINGS[0]
+
+    @property
+    def is_nested(self) -> bool:
+        """Whether parts lie inside parts, so that there may be joints."""
+        return compute.mode_of(self.mode) == compute.NESTED
 
     @cached_property
     def shells(self) -> str:

@@ -35,7 +35,7 @@ def segment_mesh(
 
     Parameters
     ----------
-    mode : "nested" or "features", optional
+    mode : "nested", "features" or "jointed", optional
         The one that the mesh shows, if None.
     **choice
         One of ``level``, ``threshold`` and ``n_parts``, or none for the default level.

@@ -90,6 +90,8 @@ GERMAN: dict[str, str] = {
     "Nested": "Verschachtelt",
     "Levels overlaid: also what lies between features, and small features inside large ones": "Stufen übereinander: auch was zwischen Merkmalen liegt, und kleine Merkmale in großen",
     "Features": "Merkmale",
+    "Joints": "Gelenke",
+    "Cut limbs also where they narrow on both sides, such as at wrists and ankles; nested parts only": "Glieder auch teilen, wo sie auf beiden Seiten breiter werden, etwa an Hand- und Fußgelenken; nur verschachtelte Teile",
     "Only what protrudes: each feature that is kept is one part, all else is body": "Nur was vorsteht: jedes behaltene Merkmal ist ein Teil, alles andere Körper",
     "How many of the most prominent features are parts": "Wie viele der auffälligsten Merkmale Teile sind",
     "How many parts the mesh is divided into, the body included": "In wie viele Teile das Netz geteilt ist, der Körper mitgezählt",

@@ -106,7 +106,7 @@ class GivenParts:
         Of the reference's faces.
     id, parent : (P,) int64
     is_drawn : (P,) bool
-        Whether a part was made by hand: there is no feature that a target must have for it.
+        Whether a part was made by hand or ends at a joint: there is no feature that a target must have for it.
     shares : (n, 1 + P) float64
         Share of the area around each of the reference's points that is body, and that is each part.
     """

@@ -7,7 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ...choices import MODES, NESTED
+from ...choices import JOINTED, NESTED, READINGS
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
 from ..borders.level_set_borders import Polyline
@@ -30,7 +30,8 @@ class Parts:
         Id of the part in the table that it grows out of; 0 for the body, and for what grows out of the body or of
         nothing.
     extremum, saddle : (P,) int64
-        Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body.
+        Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body, and no saddle for what ends
+        at a joint.
     area : (P,) float64
         In the mesh's unit of length, squared.
     n_triangles : (P,) int64
@@ -140,8 +141,9 @@ def label_branches(
         Least persistence of a part, as a fraction of the field's range.
     n_parts : int, optional
         Number of labels, the body included; where it cannot be reached, the largest below it.
-    mode : "nested" or "features"
-        The features and what lies between them when all levels up to this one are overlaid, or the features alone.
+    mode : "nested", "features" or "jointed"
+        The features and what lies between them when all levels up to this one are overlaid, or the features alone, or
+        the first with limbs cut at their joints.
     corrections : Corrections, optional
         Changes made by hand; they refer to these branches.
 
@@ -150,7 +152,7 @@ def label_branches(
     LevelError
         If the level or the mode does not exist, or more than one of the three choices is given.
     """
-    if mode not in MODES:
+    if mode not in READINGS:
         raise LevelError(f'The mode is "features" or "nested", not "{mode}".')
     if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
         raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
@@ -160,6 +162,26 @@ def label_branches(
     if level is None:
         level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
     return at_level(hierarchy.checked_level(level))
+
+
+def reading_of(mode: str, joints: bool) -> str:
+    """Return how levels are read: in a mode, with or without joints.
+
+    Raises
+    ------
+    LevelError
+        If joints are asked for among features alone.
+    """
+    if not joints:
+        return mode
+    if mode != NESTED:
+        raise LevelError('Joints are cut in nested parts only; choose the mode "nested", or leave joints out.')
+    return JOINTED
+
+
+def mode_of(reading: str) -> str:
+    """Return the mode of a way in which levels are read: joints are cut in nested parts."""
+    return NESTED if reading == JOINTED else reading
 
 
 def _at_level(part_tree: PartTree, mode: str, corrections: Corrections, level: int) -> BranchLabels:
@@ -218,7 +240,8 @@ def _origins(part_tree: PartTree, cuts: list[Ints]) -> _Origins:
     parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
     for tree, cut in zip(part_tree.trees, cuts, strict=True):
         arcs = np.flatnonzero(cut > BODY)
-        extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
+        extremum[cut[arcs]] = tree.extremum[arcs]
+        saddle[cut[arcs]] = np.where(tree.is_neck[arcs], -1, tree.saddle[arcs])
         parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
     return _Origins(parent, extremum, saddle)
 

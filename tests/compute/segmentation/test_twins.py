@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from compute import MODES, TriangleMesh, analyze
+from compute import READINGS, TriangleMesh, analyze
 from examples import humanoid
 from tests.shapes import star
 
@@ -27,7 +27,7 @@ def analysis(character, request):
     return analysis_in(character, request.param)
 
 
-@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("mode", READINGS)
 def test_every_level_of_a_symmetric_body_is_symmetric_in_every_pose(character, analysis, mode):
     """Each part covers its own mirror image in the rest pose, or that of one other part."""
     rest = character.mesh_in_pose("rest")[triangles_of(character.quads)].mean(axis=1)
