@@ -81,6 +81,7 @@ from .segmentation.edits.part_tracking import carried as carried
 from .segmentation.edits.part_tracking import carried_painting as carried_painting
 from .segmentation.edits.part_tracking import renumbered as renumbered
 from .segmentation.edits.part_tracking import tracked_parts as tracked_parts
+from .segmentation.edits.part_tracking import tracked_pieces as tracked_pieces
 from .segmentation.edits.redrawing import Drawn as Drawn
 from .segmentation.edits.redrawing import corrected_crossings as corrected_crossings
 from .segmentation.edits.redrawing import drawn_borders as drawn_borders

@@ -217,6 +217,14 @@ class MeshState:
         """Numbers, names and colours of the parts that are shown."""
         return part_table.unpacked_table(self.get)
 
+    def pieces_of_parts(self, part_tree: compute.PartTree) -> dict[int, int]:
+        """Return what piece of the surface each of the mesh's own parts is: as it is shown, or else by default."""
+        by_default = part_tree.pieces_of_parts(part_tree.hierarchy.default_level)
+        if self.registration is not None:
+            return by_default
+        branch_levels = compute.Corrections(self.corrections).branch_levels
+        return by_default | part_tree.pieces_of_parts(self.shown_level, self.mode, branch_levels)
+
     @cached_property
     def part_colours(self) -> PartTable:
         """The colours of the parts alone, which the list asks for at every redraw."""

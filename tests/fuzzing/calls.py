@@ -30,7 +30,16 @@ INNER = {
     *("match_divisible", "match_members", "match_shape_diagrams", "mixed", "mode_of", "naming", "needs_faces"),
     *("number_behind", "reading_of"),
     *("places_at_all_levels", "point_warnings", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),
-    *("shortened_borders", "sides", "silent", "taken_over", "tracked_parts", "undivided", "vertex_heights"),
+    *(
+        "shortened_borders",
+        "sides",
+        "silent",
+        "taken_over",
+        "tracked_parts",
+        "tracked_pieces",
+        "undivided",
+        "vertex_heights",
+    ),
     *("visible_parts", "welded_vertices", "with_parts", "without_necks"),
 }
 

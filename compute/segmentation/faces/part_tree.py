@@ -100,6 +100,25 @@ class PartTree:
             cuts = self._numbered(is_cut)
         return cuts
 
+    def pieces_of_parts(
+        self, level: int, mode: str = NESTED, branch_levels: tuple[tuple[int, int], ...] = ()
+    ) -> dict[int, int]:
+        """Return for each part that is cut off on a level the place of its arc among those of all trees.
+
+        The arc tells what piece of the surface it is: at other levels that may have another number.
+        """
+        cuts = np.concatenate(self.cut_arcs(level, mode, branch_levels))
+        arcs = np.flatnonzero(cuts)
+        return dict(zip(cuts[arcs].tolist(), arcs.tolist(), strict=True))
+
+    def faces_of_piece(self, piece: int) -> Bools:
+        """Mask (F,) of the faces of a piece, by the place of its arc among those of all trees."""
+        for tree, arcs in enumerate(self.trees):
+            if piece < len(arcs.parent):
+                return self.faces_inside(tree, piece)
+            piece -= len(arcs.parent)
+        raise LookupError(piece)
+
     @property
     def ends(self) -> list[Bools]:
         """For each tree, the mask (A,) of the arcs at which parts end at some level, in any mode."""
