@@ -117,14 +117,17 @@ def test_the_mode_decides_about_blunt_ends(run, tmp_path, mode, n_parts):
     assert len(report["files"][0]["objects"][0]["parts"]) == n_parts
 
 
-def test_joints_are_cut_where_they_are_asked_for(run, tmp_path):
+def test_joints_and_twins_are_in_the_report(run, tmp_path):
     character = humanoid(6000)
     add_object(TriangleMesh(character.vertices, character.triangles))
     EXPORTERS[".ply"](str(tmp_path / "humanoid.ply"))
     n_parts = {}
     for joints in ([], ["--joints"]):
         _, report, _ = run("segment", tmp_path / "humanoid.ply", *joints, "--json")
-        n_parts[report["files"][0]["settings"]["mode"]] = len(report["files"][0]["objects"][0]["parts"])
+        parts = report["files"][0]["objects"][0]["parts"]
+        n_parts[report["files"][0]["settings"]["mode"]] = len(parts)
+        mirror = {part["id"]: part["mirror"] for part in parts}
+        assert sum(twin is not None and mirror[twin] == part for part, twin in mirror.items()) >= 4
     assert n_parts["jointed"] > n_parts[None]
 
 

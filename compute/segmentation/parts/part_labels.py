@@ -36,6 +36,8 @@ class Parts:
         In the mesh's unit of length, squared.
     n_triangles : (P,) int64
         How many faces carry the label.
+    mirror : (P,) int64
+        Id of the part in the table that a symmetry of the shape maps it onto; -1 where there is none.
     """
 
     id: Ints
@@ -44,6 +46,7 @@ class Parts:
     saddle: Ints
     area: Floats
     n_triangles: Ints
+    mirror: Ints
 
     def __len__(self) -> int:
         return len(self.id)
@@ -228,22 +231,25 @@ def _reach_number(at_level: Callable[[int], BranchLabels], n_levels: int, n_part
 
 @dataclass(frozen=True, eq=False)
 class _Origins:
-    """By number of the part: what it grows out of, its tip, and the saddle it is cut off at."""
+    """By number of the part: what it grows out of, its tip, the saddle it is cut off at, and its twin."""
 
     parent: Ints
     extremum: Ints
     saddle: Ints
+    mirror: Ints
 
 
 def _origins(part_tree: PartTree, cuts: list[Ints]) -> _Origins:
     n = 1 + max(int(cut.max(initial=0)) for cut in cuts)
-    parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
+    parent, (extremum, saddle, mirror) = np.zeros(n, dtype=np.int64), np.full((3, n), -1)
     for tree, cut in zip(part_tree.trees, cuts, strict=True):
         arcs = np.flatnonzero(cut > BODY)
         extremum[cut[arcs]] = tree.extremum[arcs]
         saddle[cut[arcs]] = np.where(tree.is_neck[arcs], -1, tree.saddle[arcs])
         parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
-    return _Origins(parent, extremum, saddle)
+        twin = cut[tree.twin[arcs]]
+        mirror[cut[arcs]] = np.where((twin > BODY) & (twin != cut[arcs]), twin, -1)
+    return _Origins(parent, extremum, saddle, mirror)
 
 
 def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Parts:
@@ -251,14 +257,18 @@ def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Part
     n_faces = sum_by(labelling.of_branch, pieces.n_faces.astype(float)).astype(np.int64)
     ids = np.flatnonzero(n_faces > 0)
     n_new = max(0, len(labelling.parent) - len(origins.saddle))
-    extremum, saddle = (np.pad(column, (0, n_new), constant_values=-1) for column in (origins.extremum, origins.saddle))
+    extremum, saddle, mirror = (
+        np.pad(column, (0, n_new), constant_values=-1)[ids]
+        for column in (origins.extremum, origins.saddle, origins.mirror)
+    )
     return Parts(
         id=ids,
         parent=listed_parents(labelling.parent, ids)[ids],
-        extremum=extremum[ids],
-        saddle=saddle[ids],
+        extremum=extremum,
+        saddle=saddle,
         area=area[ids],
         n_triangles=n_faces[ids],
+        mirror=np.where(np.isin(mirror, ids), mirror, -1),
     )
 
 
