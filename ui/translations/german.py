@@ -90,6 +90,8 @@ GERMAN: dict[str, str] = {
     "Nested": "Verschachtelt",
     "Levels overlaid: also what lies between features, and small features inside large ones": "Stufen übereinander: auch was zwischen Merkmalen liegt, und kleine Merkmale in großen",
     "Features": "Merkmale",
+    "X-Mirror": "X-Spiegelung",
+    "Do the same to the part that mirrors this one on a symmetric shape, in any pose": "Dasselbe mit dem Teil tun, das dieses auf einer symmetrischen Gestalt spiegelt, in jeder Haltung",
     "Joints": "Gelenke",
     "Cut limbs also where they narrow on both sides, such as at wrists and ankles; nested parts only": "Glieder auch teilen, wo sie auf beiden Seiten breiter werden, etwa an Hand- und Fußgelenken; nur verschachtelte Teile",
     "Only what protrudes: each feature that is kept is one part, all else is body": "Nur was vorsteht: jedes behaltene Merkmal ist ein Teil, alles andere Körper",
