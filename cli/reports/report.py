@@ -29,8 +29,8 @@ class PartRow(TypedDict):
     parent: int
     area: float
     faces: int
-    # The part that a symmetry of the shape maps it onto.
-    mirror: int | None
+    # The part that a symmetry of the shape maps it onto; in 0.1.0 it was not told.
+    mirror: NotRequired[int | None]
     # Of registered objects: whether the reference has it too.
     matched: NotRequired[bool]
 
