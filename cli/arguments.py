@@ -154,10 +154,18 @@ def _add_division(command: argparse.ArgumentParser) -> None:
     choice.add_argument("--level", metavar="N", type=int, help="how many features to keep")
     choice.add_argument("--threshold", metavar="X", type=float, help="least height of a feature, as a fraction")
     choice.add_argument("--parts", metavar="N", type=int, dest="n_parts", help="how many parts, the body included")
-    command.add_argument(
+    mode = command.add_mutually_exclusive_group()
+    mode.add_argument(
         "--mode",
-        choices=compute.MODES,
-        help="parts inside parts (default), or only what stands out at this level",
+        choices=compute.READINGS,
+        help="parts inside parts (default), only what stands out at this level, or the first with joints",
+    )
+    mode.add_argument(
+        "--joints",
+        dest="mode",
+        action="store_const",
+        const=compute.JOINTED,
+        help="parts inside parts, and limbs cut where they narrow on both sides, such as at wrists and ankles",
     )
 
 

@@ -8,9 +8,12 @@ from .analysis.readings import zero_level as zero_level
 from .choices import BORDERS as BORDERS
 from .choices import BOUNDARIES as BOUNDARIES
 from .choices import FIELDS as FIELDS
+from .choices import JOINTED as JOINTED
 from .choices import METHODS as METHODS
 from .choices import MODES as MODES
+from .choices import NESTED as NESTED
 from .choices import ORDERS as ORDERS
+from .choices import READINGS as READINGS
 from .choices import SHELLS as SHELLS
 from .errors import Cancelled as Cancelled
 from .errors import EngineError as EngineError
@@ -78,6 +81,7 @@ from .segmentation.edits.part_tracking import carried as carried
 from .segmentation.edits.part_tracking import carried_painting as carried_painting
 from .segmentation.edits.part_tracking import renumbered as renumbered
 from .segmentation.edits.part_tracking import tracked_parts as tracked_parts
+from .segmentation.edits.part_tracking import tracked_pieces as tracked_pieces
 from .segmentation.edits.redrawing import Drawn as Drawn
 from .segmentation.edits.redrawing import corrected_crossings as corrected_crossings
 from .segmentation.edits.redrawing import drawn_borders as drawn_borders
@@ -100,6 +104,7 @@ from .segmentation.hierarchy.arc_tree import ALWAYS as ALWAYS
 from .segmentation.hierarchy.arc_tree import NEVER as NEVER
 from .segmentation.hierarchy.arc_tree import NO_SADDLE as NO_SADDLE
 from .segmentation.hierarchy.arc_tree import ArcTree as ArcTree
+from .segmentation.hierarchy.arc_tree import without_necks as without_necks
 from .segmentation.hierarchy.levels import DEFAULT_THRESHOLD as DEFAULT_THRESHOLD
 from .segmentation.hierarchy.levels import NOISE_THRESHOLD as NOISE_THRESHOLD
 from .segmentation.hierarchy.levels import Hierarchy as Hierarchy
@@ -115,6 +120,8 @@ from .segmentation.parts.part_labels import BranchLabels as BranchLabels
 from .segmentation.parts.part_labels import Parts as Parts
 from .segmentation.parts.part_labels import Segmentation as Segmentation
 from .segmentation.parts.part_labels import label_branches as label_branches
+from .segmentation.parts.part_labels import mode_of as mode_of
+from .segmentation.parts.part_labels import reading_of as reading_of
 from .skeletons.binding import binding_weights as binding_weights
 from .skeletons.embedding import Skeleton as Skeleton
 from .skeletons.embedding import skeleton as skeleton

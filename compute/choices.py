@@ -5,6 +5,10 @@ NESTED = "nested"
 # Only the features that protrude are parts.
 FEATURES = "features"
 MODES = (NESTED, FEATURES)
+# The nested parts, and limbs are cut at their joints.
+JOINTED = "jointed"
+# All ways in which levels are read.
+READINGS = (*MODES, JOINTED)
 # What is done with a mesh of several shells: those that prolong the largest are bridged to it, only the largest is
 # analyzed, or each that is no detail by itself.
 SHELLS = ("bridged", "largest", "separate")

@@ -80,6 +80,7 @@ def _active_row(settings: MeshSettings) -> PartRow | None:
 def _draw_part(layout: bpy.types.UILayout, settings: MeshSettings, row: PartRow) -> None:
     """Offer what can be done with a part; the body has no border of its own."""
     layout.label(text=row.title, translate=False)
+    layout.prop(settings, "mirror")
     along_field = layout.column(align=True)
     along_field.enabled = row.part != 0
     along_field.prop(settings, "part_level")

@@ -137,6 +137,9 @@ def _draw_level(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
     layout.enabled = is_analyzed(mesh)
     settings = mesh_settings(mesh)
     layout.row().prop(settings, "mode", expand=True)
+    joints = layout.row()
+    joints.enabled = read(mesh).is_nested
+    joints.prop(settings, "joints")
     column = layout.column(align=True)
     column.prop(settings, "level")
     column.prop(settings, "n_parts")

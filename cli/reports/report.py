@@ -29,6 +29,8 @@ class PartRow(TypedDict):
     parent: int
     area: float
     faces: int
+    # The part that a symmetry of the shape maps it onto; in 0.1.0 it was not told.
+    mirror: NotRequired[int | None]
     # Of registered objects: whether the reference has it too.
     matched: NotRequired[bool]
 
@@ -85,10 +87,19 @@ class Report(TypedDict):
 def part_rows(mesh: bpy.types.Mesh, labels: BranchLabels | FaceLabels) -> list[PartRow]:
     """Return the table of parts of a divided mesh."""
     parts, given = labels.parts, names_of_parts(mesh)
-    columns = (parts.id.tolist(), parts.parent.tolist(), parts.area.tolist(), parts.n_triangles.tolist())
+    numbers = (parts.id.tolist(), parts.parent.tolist(), parts.mirror.tolist())
     return [
-        {"id": part, "name": name_of_part(part, given), "parent": parent, "area": area, "faces": n_faces}
-        for part, parent, area, n_faces in zip(*columns, strict=True)
+        {
+            "id": part,
+            "name": name_of_part(part, given),
+            "parent": parent,
+            "area": area,
+            "faces": n_faces,
+            "mirror": None if mirror < 0 else mirror,
+        }
+        for part, parent, mirror, area, n_faces in zip(
+            *numbers, parts.area.tolist(), parts.n_triangles.tolist(), strict=True
+        )
     ]
 
 

@@ -7,6 +7,7 @@ import math
 import stat
 from dataclasses import dataclass
 from pathlib import Path
+from types import UnionType
 from typing import Any, TypeGuard, get_args, get_origin, get_type_hints, is_typeddict
 
 from .report import Report, Written
@@ -49,7 +50,7 @@ def read_report(path: Path) -> StoredReport:
 
 
 def has_shape(value: object, kind: Any) -> bool:
-    """Whether a value that JSON can hold is one of a type: a TypedDict, a list, a dictionary, or a plain one."""
+    """Whether a value that JSON can hold is one of a type: a TypedDict, list, dictionary, union or plain type."""
     if is_typeddict(kind):
         kinds = get_type_hints(kind)
         return (
@@ -61,6 +62,8 @@ def has_shape(value: object, kind: Any) -> bool:
         # Names are texts in JSON.
         parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
         return isinstance(value, get_origin(kind)) and all(has_shape(part, get_args(kind)[-1]) for part in parts)
+    if get_origin(kind) is UnionType:
+        return any(has_shape(value, one) for one in get_args(kind))
     if kind is float:
         return type(value) is int or (type(value) is float and math.isfinite(value))
     return kind is object or type(value) is kind

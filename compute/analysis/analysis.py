@@ -36,7 +36,7 @@ from ..segmentation.faces.part_tree import BYTES_PER_NODE, TOO_MANY_FACES, PartT
 from ..segmentation.hierarchy.arc_measures import ArcMeasures
 from ..segmentation.hierarchy.levels import Hierarchy
 from ..segmentation.hierarchy.measured_hierarchy import measured_hierarchy
-from ..segmentation.parts.part_labels import Segmentation, label_branches
+from ..segmentation.parts.part_labels import Segmentation, label_branches, reading_of
 from ..segmentation.parts.subparts import inserted
 from ..surface.cleaning import Surface, clean_surface
 from ..surface.mesh import Ints, TriangleMesh, checked_labels
@@ -321,7 +321,7 @@ class Analysis:
         return edge_profile(self.surface, self.field, self._arc_of_vertex, edges)
 
     @told_if_full
-    def borders(self, level: int | None = None, mode: str = NESTED) -> tuple[Polyline, ...]:
+    def borders(self, level: int | None = None, mode: str = NESTED, joints: bool = False) -> tuple[Polyline, ...]:
         """Return the lines on the triangles of the input along which the parts of a level end.
 
         Parameters
@@ -329,6 +329,7 @@ class Analysis:
         level : int, optional
             The default level if None.
         mode : "nested" or "features"
+        joints : bool
             As in :meth:`segment`.
 
         Returns
@@ -339,7 +340,7 @@ class Analysis:
         Raises
         ------
         LevelError
-            If there is no such level.
+            If there is no such level, or joints are asked for among features.
 
         Examples
         --------
@@ -348,7 +349,7 @@ class Analysis:
         """
         hierarchy, part_tree = self.hierarchy, self.part_tree()
         level = hierarchy.default_level if level is None else hierarchy.checked_level(level)
-        cuts = part_tree.cut_arcs(level, mode)
+        cuts = part_tree.cut_arcs(level, reading_of(mode, joints))
         crossings = cross_edges(self.profile(), part_tree.trees, part_tree.closing_heights, cuts)
         return trace_borders(self.mesh, crossings, part_of_border(cuts))
 
@@ -360,6 +361,7 @@ class Analysis:
         threshold: float | None = None,
         n_parts: int | None = None,
         mode: str = NESTED,
+        joints: bool = False,
         essential: bool = False,
         within: int | None = None,
     ) -> Segmentation:
@@ -375,6 +377,8 @@ class Analysis:
             How many labels, the body included.
         mode : "nested" or "features"
             The features and what lies between them when all levels up to this one are overlaid, or the features alone.
+        joints : bool
+            Whether limbs are cut where they narrow on both sides, such as at wrists and ankles; nested parts only.
         essential : bool
             Whether parts end at essential saddles, too: where a handle begins, such as a leg that a tail touches.
         within : int, optional
@@ -388,7 +392,8 @@ class Analysis:
         Raises
         ------
         LevelError
-            If there is no such level, mode or part, or more than one of the three choices is given.
+            If there is no such level, mode or part, if more than one of the three choices is given, or if joints are
+            asked for among features.
 
         References
         ----------
@@ -402,19 +407,22 @@ class Analysis:
         (1280,)
         >>> segmentation.n_parts
         5
+        >>> analysis.segment(joints=True).n_parts >= analysis.segment().n_parts
+        True
         """
         if essential:
             return self._ended_at_handles.segment(
-                level=level, threshold=threshold, n_parts=n_parts, mode=mode, within=within
+                level=level, threshold=threshold, n_parts=n_parts, mode=mode, joints=joints, within=within
             )
         part_tree = self.part_tree()
-        labels = label_branches(part_tree, level=level, threshold=threshold, n_parts=n_parts, mode=mode)
+        reading = reading_of(mode, joints)
+        labels = label_branches(part_tree, level=level, threshold=threshold, n_parts=n_parts, mode=reading)
         whole = Segmentation(
             labels=labels.of_faces(part_tree),
             parts=labels.parts,
             level=labels.level,
             warnings=labels.warnings,
-            _trace=partial(self.borders, labels.level, mode),
+            _trace=partial(self.borders, labels.level, mode, joints),
         )
         return whole if within is None else _divided_further(self, whole, within, mode)
 

@@ -187,3 +187,12 @@ def share_below(heights: Floats, level: Floats) -> Floats:
     share = np.where(level <= middle, rising, falling)
     share = np.where(level <= low, 0.0, np.where(level >= high, 1.0, share))
     return np.nan_to_num(share, nan=0.0)
+
+
+def steepness(corners: Floats, heights: Floats) -> Floats:
+    """Return the length of the gradient in triangles (m, 3, 3), 0 where one has collapsed."""
+    first, second = (corners[:, [1, 2]] - corners[:, :1]).swapaxes(0, 1)
+    rises = heights[:, [1, 2]] - heights[:, :1]
+    across = np.linalg.norm(rises[:, :1] * second - rises[:, 1:] * first, axis=1)
+    area = np.linalg.norm(np.cross(first, second), axis=1)
+    return np.divide(across, area, out=np.zeros_like(area), where=area > 0)

@@ -75,6 +75,7 @@ class MeshSettings(Protocol):
     active_row: int
     correction_rows: Rows[CorrectionRow]
     active_correction: int
+    mirror: bool
 
 
 class JobStatus(Protocol):

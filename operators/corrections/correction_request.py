@@ -11,6 +11,7 @@ from ...tasks.refusals import Refusal
 from ..blender.known_values import mesh_of
 from ..blender.mixins import OperatorMixin
 from ..blender.outcome import Outcome
+from ..blender.registered_settings import mesh_settings
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState, is_analyzed_for, read
 from ..messages.user_errors import can_use_active_mesh, refusals_told
@@ -23,6 +24,8 @@ class CorrectsParts(OperatorMixin):
     """Corrects the parts of the active mesh; operators give ``correct``."""
 
     bl_options = {"REGISTER", "UNDO"}
+    # Whether the part's twin is corrected, too; of operators that have this property.
+    mirror: bool
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -41,6 +44,8 @@ class CorrectsParts(OperatorMixin):
         """Set what the call leaves open."""
         if PART_PROPERTY in self.properties.bl_rna.properties:
             use_active_part(self, state.mesh)
+        if "mirror" in self.properties.bl_rna.properties and not self.properties.is_property_set("mirror"):
+            self.mirror = mesh_settings(state.mesh).mirror
 
     def correct(self, state: MeshState) -> None:
         """Change the corrections of a mesh."""

@@ -5,10 +5,11 @@ import bpy
 from ... import compute
 from ...tasks.refusals import Refusal
 from ..blender.registered_settings import mesh_settings
-from ..blender.typed_properties import IntProperty, TypedProperties
+from ..blender.typed_properties import BoolProperty, IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
 from ..outputs import part_writer
+from .both_sides import MIRROR, correct_both, twin_of
 from .correction_request import CorrectsParts, new_item, refuse_absent
 
 
@@ -25,6 +26,8 @@ class EIGENPARTS_OT_merge_parts(CorrectsParts, TypedProperties, bpy.types.Operat
         min=0,
     )
 
+    mirror: bool = BoolProperty(name="X-Mirror", description=MIRROR, options={"SKIP_SAVE"})
+
     def fill_in(self, state: MeshState) -> None:
         """Join the active part to the one it grows out of."""
         super().fill_in(state)
@@ -32,7 +35,11 @@ class EIGENPARTS_OT_merge_parts(CorrectsParts, TypedProperties, bpy.types.Operat
             self.into = whole_of(state.mesh, self.part)
 
     def correct(self, state: MeshState) -> None:
-        merge_parts(state, self.part, self.into)
+        other = twin_of(state, self.into)
+        into = {self.part: self.into, twin_of(state, self.part): self.into if other is None else other}
+        # Twins that become one are one pair only.
+        mirror = self.mirror and other != self.part
+        correct_both(state, self.part, mirror, lambda now, part: merge_parts(now, part, into[part]))
 
 
 def merge_parts(state: MeshState, part: int, into: int) -> None:

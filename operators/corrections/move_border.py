@@ -6,10 +6,11 @@ import bpy
 
 from ... import compute
 from ...tasks.refusals import Refusal
-from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
+from ..blender.typed_properties import BoolProperty, FloatProperty, IntProperty, TypedProperties
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
 from ..outputs import part_writer
+from .both_sides import MIRROR, correct_both
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 
 
@@ -31,6 +32,7 @@ class EIGENPARTS_OT_move_border(CorrectsParts, TypedProperties, bpy.types.Operat
         precision=3,
         step=0.5,
     )
+    mirror: bool = BoolProperty(name="X-Mirror", description=MIRROR, options={"SKIP_SAVE"})
 
     def fill_in(self, state: MeshState) -> None:
         """Begin where the border lies now."""
@@ -39,7 +41,7 @@ class EIGENPARTS_OT_move_border(CorrectsParts, TypedProperties, bpy.types.Operat
             self.offset = offset_of(state.corrections, self.part)
 
     def correct(self, state: MeshState) -> None:
-        move_border(state, self.part, self.offset)
+        correct_both(state, self.part, self.mirror, lambda now, part: move_border(now, part, self.offset))
 
 
 def move_border(state: MeshState, part: int, offset: float) -> None:

@@ -6,12 +6,13 @@ import bpy
 
 from ... import compute
 from ...tasks.refusals import Refusal
-from ..blender.typed_properties import FloatProperty, IntProperty, TypedProperties
+from ..blender.typed_properties import BoolProperty, FloatProperty, IntProperty, TypedProperties
 from ..mesh_data.mesh_arrays import read_own_integers
 from ..mesh_state import corrected_analysis
 from ..mesh_state.state import MeshState
 from ..outputs import part_writer
 from ..outputs.division import PART
+from .both_sides import MIRROR, correct_both
 from .correction_request import BODY_IS_WHAT_IS_LEFT, CorrectsParts, new_item, refuse_absent
 
 
@@ -32,9 +33,10 @@ class EIGENPARTS_OT_split_part(CorrectsParts, TypedProperties, bpy.types.Operato
         max=1,
         subtype="FACTOR",
     )
+    mirror: bool = BoolProperty(name="X-Mirror", description=MIRROR, options={"SKIP_SAVE"})
 
     def correct(self, state: MeshState) -> None:
-        split_part(state, self.part, self.position)
+        correct_both(state, self.part, self.mirror, lambda now, part: split_part(now, part, self.position))
 
 
 def split_part(state: MeshState, part: int, position: float) -> int:

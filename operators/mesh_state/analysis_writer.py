@@ -68,7 +68,7 @@ def store(
     earlier = read(mesh)
     part_tree = analysis.part_tree
     has_same_parts = has_trees(earlier.stored, part_tree.hierarchy)
-    kept = _kept(earlier, (*CHOICES, *OF_PARTS)) if has_same_parts else _kept_by_place(earlier, analysis)
+    kept = _kept_by_number(earlier, analysis) if has_same_parts else _kept_by_place(earlier, analysis)
     items, painted, warnings = _kept_corrections(earlier, analysis, has_same_parts)
     values = {
         VERSION: SCHEMA,
@@ -120,10 +120,18 @@ def _otherwise_scaled(mesh: bpy.types.Mesh, stretch: Stretch) -> tuple[str, ...]
     return (OTHERWISE_SCALED.format(others[0].name),) if 0 < len(others) < len(users) else ()
 
 
+def _kept_by_number(earlier: MeshState, analysis: StoredAnalysis) -> dict[str, Any]:
+    """Return what goes on where parts have the same numbers."""
+    kept, table = _kept(earlier, (*CHOICES, *OF_PARTS)), earlier.parts
+    if earlier.registration is not None or not table.names:
+        return kept
+    return {**kept, **packed_table(table.with_pieces(earlier.pieces_of_parts(analysis.part_tree)))}
+
+
 def _kept_by_place(earlier: MeshState, analysis: StoredAnalysis) -> dict[str, Any]:
     """Return the same where parts have other numbers: names and colours go where most of their faces went."""
     kept, table = _kept(earlier, CHOICES), earlier.parts
-    if not (table.names or table.colours):
+    if not (table.names or table.piece_names or table.colours):
         return kept
     try:
         before = earlier.analysis_of_any_shape.part_tree
@@ -132,7 +140,10 @@ def _kept_by_place(earlier: MeshState, analysis: StoredAnalysis) -> dict[str, An
     numbers = {*table.places, *table.names, *table.colours}
     areas = face_areas(earlier.mesh, analysis.stretch)
     tracked = compute.tracked_parts(numbers, before, analysis.part_tree, areas, earlier.mode)
-    return {**kept, **packed_table(renumbered_table(table, tracked))}
+    if earlier.registration is None:
+        table = table.with_pieces(earlier.pieces_of_parts(before))
+    pieces = compute.tracked_pieces(table.piece_names, before, analysis.part_tree, areas, earlier.mode)
+    return {**kept, **packed_table(renumbered_table(table, tracked, pieces))}
 
 
 def _kept_corrections(

@@ -97,7 +97,8 @@ def _n_numbers(stored: Any) -> int:
     """Return a number above that of any part: those of levels, and those that were made by hand."""
     try:
         tree = stored[TREE.format(0)]
-        return compute.number_behind(int(tree["n_roots"]), int(tree["n_features"])) + MOST_OWN_PARTS
+        numbers = (int(tree["n_roots"]), int(tree["n_features"]), int(tree.get("n_necks", 0)))
+        return compute.number_behind(*numbers) + MOST_OWN_PARTS
     except UNREADABLE:
         return MOST_OWN_PARTS
 
@@ -119,7 +120,7 @@ def _item(row: Any) -> compute.Correction | None:
 def _makes_sense(item: compute.Correction, n_numbers: int) -> bool:
     return (
         item.kind in compute.CORRECTION_KINDS
-        and item.mode in compute.MODES
+        and item.mode in compute.READINGS
         and math.isfinite(item.value)
         and item.level >= 0
         and 0 <= item.part < n_numbers

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ... import compute
 from .palette import PARTS, colours_of_labels
-from .schema import PART_COLOURS, PART_NAMES, PART_NUMBERS, PART_SWATCHES
+from .schema import PART_COLOURS, PART_NAMES, PART_NUMBERS, PART_SWATCHES, PIECE_NAMES
 
 BODY = "Body"
 
@@ -30,7 +30,9 @@ class PartTable:
     places : dict of int to (int, int)
         For each part that was ever seen, the part that it grew out of and which of its parts it was, from 1.
     names : dict of int to str
-        Those that the user gave.
+        Those that the user gave, as far as their parts are shown or were made by hand.
+    piece_names : dict of int to str
+        The same for all pieces of the surface, by the places of their arcs: a piece has other numbers at other levels.
     colours : dict of int to (float, float, float)
         Those that the user gave, in linear RGB.
     swatches : dict of int to int
@@ -39,6 +41,7 @@ class PartTable:
 
     places: dict[int, tuple[int, int]] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)
+    piece_names: dict[int, str] = field(default_factory=dict)
     colours: dict[int, tuple[float, float, float]] = field(default_factory=dict)
     swatches: dict[int, int] = field(default_factory=dict)
 
@@ -65,26 +68,50 @@ class PartTable:
                 table[part, :3] = colour
         return table
 
-    def renamed(self, part: int, name: str) -> PartTable:
+    def renamed(self, part: int, name: str, piece: int | None = None) -> PartTable:
         """Return the table with a name for a part; an empty one brings its first name back, a taken one gets a number.
 
         "Arm" becomes "Arm.001" if another part has that name.
         """
         others = {other: given for other, given in self.names.items() if other != part}
-        table = replace(self, names=others)
+        pieces = {other: given for other, given in self.piece_names.items() if other != piece}
+        table = replace(self, names=others, piece_names=pieces)
         name = name.strip()
         if not name or name == table.name_of(part):
             return table
-        taken = {self.name_of(other) for other in (0, *self.places) if other != part}
-        return replace(self, names={**others, part: _free_name(name, taken)})
+        taken = {*pieces.values(), *(self.name_of(other) for other in (0, *self.places) if other != part)}
+        name = _free_name(name, taken)
+        return replace(
+            table, names={**others, part: name}, piece_names=pieces if piece is None else {**pieces, piece: name}
+        )
+
+    def with_pieces(self, pieces: Mapping[int, int]) -> PartTable:
+        """Return the table with the names of parts that no piece has on theirs, given what piece each part is."""
+        given = set(self.piece_names.values())
+        names = {pieces[part]: name for part, name in self.names.items() if part in pieces and name not in given}
+        return replace(self, piece_names=names | self.piece_names)
+
+    def shown_as(self, pieces: Mapping[int, int], first_own: int) -> PartTable:
+        """Return the table with the names of another level: those of the pieces that the parts are there.
+
+        Parameters
+        ----------
+        pieces : mapping of int to int
+            The piece that each part is.
+        first_own : int
+            Parts with this number and higher ones were made by hand; they keep their names, as the body does.
+        """
+        own = {part: name for part, name in self.names.items() if part == 0 or part >= first_own}
+        names = {part: self.piece_names[piece] for part, piece in pieces.items() if piece in self.piece_names}
+        return replace(self, names=own | names)
 
     def coloured(self, part: int, colour: tuple[float, float, float]) -> PartTable:
         """Return the table with a colour for a part, in linear RGB."""
         return replace(self, colours={**self.colours, part: colour})
 
 
-def renumbered_table(table: PartTable, tracked: Mapping[int, int]) -> PartTable:
-    """Return a table with the numbers that parts have in another analysis; those that are not there are left out.
+def renumbered_table(table: PartTable, tracked: Mapping[int, int], pieces: Mapping[int, int]) -> PartTable:
+    """Return a table with the numbers that parts and pieces have in another analysis; what is not there is left out.
 
     The other analysis has swatches of its own.
     """
@@ -95,6 +122,7 @@ def renumbered_table(table: PartTable, tracked: Mapping[int, int]) -> PartTable:
             if part in tracked and parent in tracked
         },
         names={tracked[part]: name for part, name in table.names.items() if part in tracked},
+        piece_names={pieces[piece]: name for piece, name in table.piece_names.items() if piece in pieces},
         colours={tracked[part]: colour for part, colour in table.colours.items() if part in tracked},
     )
 
@@ -125,11 +153,17 @@ def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str,
     columns: dict[str, Mapping[int, Any]] = {
         PART_NUMBERS: table.places,
         PART_NAMES: table.names,
+        PIECE_NAMES: table.piece_names,
         PART_COLOURS: table.colours,
     }
     swatches = {PART_SWATCHES: _flat(table.swatches)} if table.swatches else {}
     if before is not None:
-        stored = {PART_NUMBERS: before.places, PART_NAMES: before.names, PART_COLOURS: before.colours}
+        stored = {
+            PART_NUMBERS: before.places,
+            PART_NAMES: before.names,
+            PIECE_NAMES: before.piece_names,
+            PART_COLOURS: before.colours,
+        }
         columns = {name: column for name, column in columns.items() if column != stored[name]}
         swatches = swatches if table.swatches != before.swatches else {}
     groups = {name: {str(part): _plain(value) for part, value in column.items()} for name, column in columns.items()}
@@ -139,8 +173,11 @@ def packed_table(table: PartTable, before: PartTable | None = None) -> dict[str,
 def unpacked_table(get: Callable[[str], Any]) -> PartTable:
     """Return a table as far as it can be understood, from a call that gives a stored group by its name."""
     places = _rows(get(PART_NUMBERS), 2, ("i",))
-    names = {part: name for part, name in _by_part(get(PART_NAMES)).items() if isinstance(name, str)}
-    return replace(unpacked_colours(get), places=places, names=names)
+    names, piece_names = (
+        {part: name for part, name in _by_part(get(group)).items() if isinstance(name, str)}
+        for group in (PART_NAMES, PIECE_NAMES)
+    )
+    return replace(unpacked_colours(get), places=places, names=names, piece_names=piece_names)
 
 
 def unpacked_colours(get: Callable[[str], Any]) -> PartTable:

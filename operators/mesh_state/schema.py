@@ -17,9 +17,11 @@ STRETCH = "stretch"
 LEVEL, MODE, PARTS, OUTPUTS, SOFTNESS = "level", "mode", "parts", "outputs", "softness"
 # Of the parts, each a group keyed by their numbers.
 PART_NUMBERS, PART_NAMES, PART_COLOURS = "part_numbers", "part_names", "part_colours"
+# The names by the pieces of surface that they belong to, whatever their number at a level.
+PIECE_NAMES = "piece_names"
 # The colours that parts have by themselves, as places in the palette: numbers of parts and places in turn.
 PART_SWATCHES = "part_swatches"
-PART_TABLES = (PART_NUMBERS, PART_NAMES, PART_COLOURS, PART_SWATCHES)
+PART_TABLES = (PART_NUMBERS, PART_NAMES, PIECE_NAMES, PART_COLOURS, PART_SWATCHES)
 # Of the corrections by hand; branches that were redrawn for them are there only while they are needed.
 CORRECTIONS, REDRAWN = "corrections", "pieces"
 # There only while the mesh shows the parts of another.

@@ -4,6 +4,7 @@ A file may come from anywhere, so only what has the type that was written is rea
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, get_args, get_origin
 
@@ -34,18 +35,19 @@ def packed_array(array: NDArray[Any]) -> dict[str, Any]:
     return {"dtype": dtype, "shape": list(array.shape)} | ({"values": values.ravel().tolist()} if array.size else {})
 
 
-def unpacked(group: Any, record: type) -> dict[str, Any]:
+def unpacked(group: Any, record: type, known: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Return the fields of a packed record; raises one of ``UNREADABLE`` if one is not what it holds.
 
-    What belongs to each face and what is a record of its own is left out.
+    What belongs to each face and what is a record of its own is left out. Fields that are ``known`` are not read.
     """
-    held = {field.name: field.type for field in fields(record) if field.name != "of_face"}
+    known = known or {}
+    held = {field.name: field.type for field in fields(record) if field.name not in ("of_face", *known)}
     scalars = {name: _number(group[name], kind) for name, kind in held.items() if kind in (bool, int, float)}
     dtypes = {name: _dtype(kind) for name, kind in held.items() if name not in scalars and _dtype(kind)}
     arrays = {name: unpacked_array(group[name], dtype) for name, dtype in dtypes.items()}
     if not all(np.isfinite(array).all() for array in arrays.values()):
         raise ValueError("not finite")
-    return scalars | arrays
+    return {**scalars, **arrays, **known}
 
 
 def unpacked_array(group: Any, dtype: str) -> NDArray[Any]:

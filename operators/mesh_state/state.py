@@ -122,9 +122,14 @@ class MeshState:
 
     @cached_property
     def mode(self) -> str:
-        """The mode the mesh was last divided in, the default one if it never was."""
+        """How levels were last read, with or without joints; in the default mode if they never were."""
         mode = self.get(schema.MODE)
-        return mode if mode in compute.MODES else compute.MODES[0]
+        return mode if mode in compute.READINGS else compute.READINGS[0]
+
+    @property
+    def is_nested(self) -> bool:
+        """Whether parts lie inside parts, so that there may be joints."""
+        return compute.mode_of(self.mode) == compute.NESTED
 
     @cached_property
     def shells(self) -> str:
@@ -211,6 +216,14 @@ class MeshState:
     def parts(self) -> PartTable:
         """Numbers, names and colours of the parts that are shown."""
         return part_table.unpacked_table(self.get)
+
+    def pieces_of_parts(self, part_tree: compute.PartTree) -> dict[int, int]:
+        """Return what piece of the surface each of the mesh's own parts is: as it is shown, or else by default."""
+        by_default = part_tree.pieces_of_parts(part_tree.hierarchy.default_level)
+        if self.registration is not None:
+            return by_default
+        branch_levels = compute.Corrections(self.corrections).branch_levels
+        return by_default | part_tree.pieces_of_parts(self.shown_level, self.mode, branch_levels)
 
     @cached_property
     def part_colours(self) -> PartTable:

@@ -177,7 +177,9 @@ def vertex_heights(mesh: bpy.types.Mesh) -> NDArray[np.float64]:
 def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
     n_trees = 2 if TREE.format(1) in group else 1
     tables = [group[TREE.format(i)] for i in range(n_trees)]
-    trees = tuple(compute.ArcTree(**unpacked(_with_twins(table), compute.ArcTree)) for table in tables)
+    trees = tuple(
+        compute.ArcTree(**unpacked(_with_twins(table), compute.ArcTree, _without_necks(table))) for table in tables
+    )
     return compute.PartTree(
         hierarchy=compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees),
         measures=tuple(compute.ArcMeasures(**unpacked(table, compute.ArcMeasures)) for table in tables),
@@ -190,6 +192,11 @@ def _with_twins(table: Any) -> Any:
     """Return a stored tree with what twins have in common; in 0.1.0 there were none."""
     own = {"joint_part": "part", "joint_closing": "closing"}
     return {**table, **{joint: table[name] for joint, name in own.items() if joint not in table}}
+
+
+def _without_necks(table: Any) -> dict[str, Any]:
+    """Return what is known of a stored tree in which no necks were looked for; nothing if they were."""
+    return {} if "neck" in table else compute.without_necks(len(unpacked_array(table["part"], "int64")))
 
 
 def _unpacked_closing_heights(group: Any, number: int, tree: compute.ArcTree) -> NDArray[np.float64]:

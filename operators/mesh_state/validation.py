@@ -27,7 +27,10 @@ def is_sound(part_tree: compute.PartTree) -> bool:
 
 def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
     n_arcs = tree.parent.size
-    columns = (tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, tree.joint_part, tree.joint_closing)
+    columns = (
+        *(tree.parent, tree.part, tree.extremum, tree.saddle, tree.closing, tree.joint_part, tree.joint_closing),
+        *(tree.twin, tree.neck, tree.neck_closing),
+    )
     if not all(column.shape == (n_arcs,) for column in columns):
         return False
     is_later = (tree.parent > np.arange(n_arcs)) | (tree.parent == -1)
@@ -41,7 +44,21 @@ def _is_sound_tree(tree: compute.ArcTree, n_features: int) -> bool:
         and lie_within(tree.part, 1, 2 * (n_features + n_arcs) + 1)
         and bool(((tree.joint_part >= 1) & (tree.joint_part <= tree.part)).all())
         and bool(((tree.joint_closing >= compute.ALWAYS) & (tree.joint_closing <= tree.closing)).all())
+        and _are_sound_necks(tree)
         and _are_sound_shells(tree)
+    )
+
+
+def _are_sound_necks(tree: compute.ArcTree) -> bool:
+    """Whether necks have places of their own among all, and lie where no pair ends; twins are arcs."""
+    neck, n_arcs = tree.neck[tree.is_neck], len(tree.parent)
+    return (
+        lie_within(tree.twin, 0, n_arcs)
+        and 0 <= tree.n_necks <= 2 * n_arcs
+        and lie_within(neck, 0, tree.n_necks)
+        and len(np.unique(neck)) == len(neck)
+        and lie_within(tree.neck_closing, compute.ALWAYS, compute.NEVER + 1)
+        and bool((tree.has_saddle & (tree.closing == compute.NEVER))[tree.is_neck].all())
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from ... import compute
@@ -40,7 +41,9 @@ def write_parts(
         Those that the parts come from; those of the state if None.
     """
     mesh, of_faces = state.mesh, labels.of_faces(part_tree)
-    numbered = number_parts(parts, labels.parts)
+    items = state.corrections if items is None else items
+    mode = changes.get(schema.MODE, state.mode)
+    numbered = number_parts(_with_names(parts, state, labels, part_tree, mode, items), labels.parts)
     if isinstance(labels, compute.BranchLabels):
         numbered = with_swatches(numbered, compute.visible_parts(labels, part_tree))
     else:
@@ -48,10 +51,28 @@ def write_parts(
     tables = packed_table(numbered, state.parts)
     division = division_of(of_faces, numbered, state.softness)
     shown = {schema.LEVEL: labels.level, schema.PARTS: packed(labels.parts)}
-    items = state.corrections if items is None else items
     write_attributes(mesh, {PART: of_faces, **(attributes or {})})
     remember(mesh, {**shown, **tables, **changes})
     list_parts(mesh, labels.parts)
     list_corrections(mesh, items, labels.resting, numbered)
     output_registry.write(mesh, division, state.outputs)
     mesh.update()
+
+
+def _with_names(
+    parts: PartTable,
+    state: MeshState,
+    labels: compute.BranchLabels | compute.FaceLabels,
+    part_tree: compute.PartTree,
+    mode: str,
+    items: tuple[compute.Correction, ...],
+) -> PartTable:
+    """Return the table with the names of the pieces that the parts are now."""
+    if not isinstance(labels, compute.BranchLabels):
+        # The parts of a reference, whose pieces are not this mesh's.
+        return replace(parts, piece_names={})
+    if not (parts.names or parts.piece_names):
+        return parts
+    named = parts.with_pieces(state.pieces_of_parts(part_tree))
+    pieces = part_tree.pieces_of_parts(labels.level, mode, compute.Corrections(items).branch_levels)
+    return named.shown_as(pieces, compute.first_own_part(part_tree.trees[0]))

@@ -35,7 +35,7 @@ def segment_mesh(
 
     Parameters
     ----------
-    mode : "nested" or "features", optional
+    mode : "nested", "features" or "jointed", optional
         The one that the mesh shows, if None.
     **choice
         One of ``level``, ``threshold`` and ``n_parts``, or none for the default level.
@@ -163,7 +163,17 @@ def choose_output(mesh: bpy.types.Mesh, key: str, is_wanted: bool) -> None:
 def rename_part(mesh: bpy.types.Mesh, part: int, name: str) -> None:
     """Give a part a name; an empty one brings its first name back."""
     state = read(mesh)
-    _rewrite(state, parts=state.parts.renamed(part, name))
+    _rewrite(state, parts=state.parts.renamed(part, name, _piece_of(state, part)))
+
+
+def _piece_of(state: MeshState, part: int) -> int | None:
+    """Return the piece of surface that a shown part is; None if it is the body, made by hand or of another mesh."""
+    if state.registration is not None:
+        return None
+    try:
+        return state.pieces_of_parts(state.analysis_of_any_shape.part_tree).get(part)
+    except Refusal:
+        return None
 
 
 def colour_part(mesh: bpy.types.Mesh, part: int, colour: tuple[float, float, float]) -> None:

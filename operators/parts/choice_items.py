@@ -31,6 +31,7 @@ MODE_ITEMS = _items(
         "features": ("Features", "Only what protrudes: each feature that is kept is one part, all else is body"),
     },
 )
+JOINTS = "Cut limbs also where they narrow on both sides, such as at wrists and ankles; nested parts only"
 SHELL_ITEMS = _items(
     compute.SHELLS,
     {

@@ -5,13 +5,13 @@ import bpy
 from ... import compute
 from ..blender.known_values import mesh_of, present
 from ..blender.outcome import Outcome
-from ..blender.typed_properties import EnumProperty, FloatProperty, IntProperty, TypedProperties
+from ..blender.typed_properties import BoolProperty, EnumProperty, FloatProperty, IntProperty, TypedProperties
 from ..mesh_data.viewport import show_vertex_colours
 from ..mesh_state.state import is_analyzed_for, read
 from ..messages.sentences import tell
 from ..messages.user_errors import can_use_active_mesh, refusals_told
 from ..outputs import part_writer
-from .choice_items import MODE_ITEMS, identifier, word
+from .choice_items import JOINTS, MODE_ITEMS, identifier, word
 
 # What a division can go by, and the property that says how far.
 MEASURES = {"LEVEL": "level", "N_PARTS": "n_parts", "THRESHOLD": "threshold"}
@@ -53,6 +53,7 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
         items=MODE_ITEMS,
         options={"SKIP_SAVE"},
     )
+    joints: bool = BoolProperty(name="Joints", description=JOINTS, options={"SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -62,6 +63,7 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
         layout = present(self.layout)
         layout.use_property_split = True
         layout.prop(self, "mode")
+        layout.prop(self, "joints")
         layout.prop(self, "by")
         if self.by in MEASURES:
             layout.prop(self, MEASURES[self.by])
@@ -69,7 +71,7 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> Outcome:
         state, given = read(mesh_of(context.object)), self._given()
         with refusals_told(self):
-            mode = word(compute.MODES, self.mode) if self.properties.is_property_set("mode") else state.mode
+            mode = self._reading(state.mode)
             labels = part_writer.segment(state, mode=mode, **{name: getattr(self, name) for name in given})
             show_vertex_colours(context)
             for warning in labels.warnings:
@@ -77,6 +79,13 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
             self._fill_in(labels, mode, given)
             return {"FINISHED"}
         return {"CANCELLED"}
+
+    def _reading(self, shown: str) -> str:
+        """Return how levels are to be read: as they are shown, where nothing else is given."""
+        is_given = self.properties.is_property_set
+        mode = word(compute.MODES, self.mode) if is_given("mode") else compute.mode_of(shown)
+        keeps_joints = shown == compute.JOINTED and mode == compute.NESTED
+        return compute.reading_of(mode, self.joints if is_given("joints") else keeps_joints)
 
     def _given(self) -> list[str]:
         """Return what the division goes by: what was chosen, or all that is given."""
@@ -87,7 +96,7 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
     def _fill_in(self, labels: "compute.BranchLabels", mode: str, given: list[str]) -> None:
         """Let the panel of the last operation begin with what the mesh shows."""
         self.by = next((by for by, name in MEASURES.items() if name in given), "DEFAULT")
-        self.mode = identifier(mode)
+        self.mode, self.joints = identifier(compute.mode_of(mode)), mode == compute.JOINTED
         for name, value in (("level", labels.level), ("n_parts", len(labels.parts))):
             if name not in given:
                 setattr(self, name, value)

@@ -14,6 +14,7 @@ from ..blender.typed_properties import (
     StringProperty,
     TypedProperties,
 )
+from ..corrections.both_sides import MIRROR, correct_both
 from ..corrections.branch_level import set_branch_level
 from ..corrections.move_border import move_border, offset_of
 from ..mesh_state.state import read
@@ -48,7 +49,8 @@ def _part_border(settings: "CorrectionSettings") -> float:
 
 @shown_in_panel
 def _set_part_border(settings: "CorrectionSettings", offset: float) -> None:
-    move_border(read(mesh_with(settings)), settings.active_part, offset)
+    state, part = read(mesh_with(settings)), settings.active_part
+    correct_both(state, part, settings.mirror, lambda now, one: move_border(now, one, offset))
 
 
 class CorrectionSettings(TypedProperties, GroupMixin):
@@ -76,5 +78,6 @@ class CorrectionSettings(TypedProperties, GroupMixin):
         get=_part_border,
         set=_set_part_border,
     )
+    mirror: bool = BoolProperty(name="X-Mirror", description=MIRROR)
     correction_rows: "Rows[EigenpartsCorrectionRow]" = CollectionProperty(type=EigenpartsCorrectionRow)
     active_correction: int = IntProperty(name="Correction", description="A correction; the cross takes it back")

@@ -6,10 +6,10 @@ from bpy.props import PointerProperty
 from ... import compute
 from ..blender.known_values import mesh_with
 from ..blender.registered_settings import SETTINGS
-from ..blender.typed_properties import EnumProperty, IntProperty, TypedProperties
+from ..blender.typed_properties import BoolProperty, EnumProperty, IntProperty, TypedProperties
 from ..mesh_state.state import read
 from ..outputs import part_writer
-from ..parts.choice_items import MODE_ITEMS
+from ..parts.choice_items import JOINTS, MODE_ITEMS
 from .correction_settings import CorrectionSettings, EigenpartsCorrectionRow
 from .output_settings import OutputSettings
 from .panel_problems import shown_in_panel
@@ -17,12 +17,22 @@ from .part_list import EigenpartsPartRow, PartList
 
 
 def _mode(settings: "EigenpartsMeshSettings") -> int:
-    return compute.MODES.index(read(mesh_with(settings)).mode)
+    return compute.MODES.index(compute.mode_of(read(mesh_with(settings)).mode))
 
 
 @shown_in_panel
 def _set_mode(settings: "EigenpartsMeshSettings", mode: int) -> tuple[str, ...]:
     return part_writer.show_mode(mesh_with(settings), compute.MODES[mode]).warnings
+
+
+def _joints(settings: "EigenpartsMeshSettings") -> bool:
+    return read(mesh_with(settings)).mode == compute.JOINTED
+
+
+@shown_in_panel
+def _set_joints(settings: "EigenpartsMeshSettings", joints: bool) -> tuple[str, ...]:
+    reading = compute.reading_of(compute.mode_of(read(mesh_with(settings)).mode), joints)
+    return part_writer.show_mode(mesh_with(settings), reading).warnings
 
 
 def _level(settings: "EigenpartsMeshSettings") -> int:
@@ -52,6 +62,12 @@ class EigenpartsMeshSettings(PartList, CorrectionSettings, OutputSettings, Typed
         items=MODE_ITEMS,
         get=_mode,
         set=_set_mode,
+    )
+    joints: bool = BoolProperty(
+        name="Joints",
+        description=JOINTS,
+        get=_joints,
+        set=_set_joints,
     )
     level: int = IntProperty(
         name="Level",

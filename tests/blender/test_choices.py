@@ -60,13 +60,13 @@ def test_the_fields_of_the_engine_come_first(extension):
 def test_the_command_line_takes_the_words_of_the_engine(extension, option, capsys):
     from eigenparts.cli import arguments
 
-    for word in {"mode": compute.MODES, "shells": compute.SHELLS, "borders": compute.BORDERS}[option]:
+    for word in {"mode": compute.READINGS, "shells": compute.SHELLS, "borders": compute.BORDERS}[option]:
         assert getattr(arguments.parse(["segment", "a.obj", f"--{option}", word]), option) == word
     with pytest.raises(SystemExit):
         arguments.parse(["segment", "a.obj", f"--{option}", "other"])
 
 
-@pytest.mark.parametrize("words", [compute.MODES, compute.SHELLS])
+@pytest.mark.parametrize("words", [compute.READINGS, compute.SHELLS])
 def test_the_page_of_the_command_line_names_every_word(words):
     page = (ROOT / "docs" / "command_line.md").read_text()
     assert [word for word in words if f"`{word}`" not in page and f" {word}`" not in page] == []

@@ -335,3 +335,64 @@ def test_borders_along_edges_keep_corrections(person):
     bpy.ops.eigenparts.segment()
     np.testing.assert_array_equal(labels_of(person), moved)
     assert first in moved
+
+
+def twins_of(obj):
+    parts = obj.data["eigenparts_state"]["parts"]
+    ids, mirror = (list(parts[name]["values"]) for name in ("id", "mirror"))
+    return {part: twin for part, twin in zip(ids, mirror, strict=True) if twin >= 0}
+
+
+def share_of(obj, part):
+    return rows(obj)[part].share
+
+
+def test_what_is_done_to_a_part_is_done_to_its_twin(person):
+    part, twin = next(iter(twins_of(person).items()))
+    bpy.ops.eigenparts.split_part(part=part, position=0.3, mirror=True)
+    assert share_of(person, part) == pytest.approx(share_of(person, twin), rel=0.05)
+    first, second = sorted(rows(person))[-2:]
+    bpy.ops.eigenparts.move_border(part=first, offset=-0.1, mirror=True)
+    assert share_of(person, first) == pytest.approx(share_of(person, second), rel=0.05)
+    bpy.ops.eigenparts.merge_parts(part=first, into=part, mirror=True)
+    assert not {first, second} & set(rows(person))
+    assert share_of(person, part) == pytest.approx(share_of(person, twin), rel=0.05)
+
+
+def test_the_tick_of_the_panel_counts_for_borders_and_operators(person):
+    part, twin = next(iter(twins_of(person).items()))
+    settings = person.data.eigenparts
+    settings.mirror = True
+    settings.active_row = next(row for row, other in enumerate(settings.rows) if other.part == part)
+    before = share_of(person, part), share_of(person, twin)
+    settings.part_border = -0.1
+    assert share_of(person, part) < before[0]
+    assert share_of(person, twin) < before[1]
+    bpy.ops.eigenparts.split_part(part=part)
+    assert len(corrections_of(person)) == 4
+    bpy.ops.eigenparts.split_part(part=part, mirror=False)
+    assert len(corrections_of(person)) == 5
+
+
+def test_a_part_without_a_twin_is_corrected_alone(person):
+    part = next(part for part in rows(person) if part and part not in twins_of(person))
+    bpy.ops.eigenparts.split_part(part=part, mirror=True)
+    assert len(corrections_of(person)) == 1
+
+
+def test_a_twin_that_cannot_be_corrected_leaves_both_as_they_were(person, monkeypatch):
+    from eigenparts.operators.corrections import split
+
+    part, twin = next(iter(twins_of(person).items()))
+    own = split.split_part
+
+    def refusing(state, number, position):
+        if number == twin:
+            raise split.Refusal("The twin cannot be split.")
+        return own(state, number, position)
+
+    monkeypatch.setattr(split, "split_part", refusing)
+    before = everything_on(person.data)
+    with pytest.raises(RuntimeError, match="twin cannot be split"):
+        bpy.ops.eigenparts.split_part(part=part, mirror=True)
+    assert everything_on(person.data) == before

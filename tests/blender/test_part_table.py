@@ -179,3 +179,74 @@ def test_undo_brings_the_name_before_back(analyzed):
         bpy.ops.ed.undo_push(message="named")
         bpy.ops.ed.undo()
     assert titles(bpy.data.objects["star"])[2] == "Part 2"
+
+
+def with_all_inside(obj):
+    """Return for each part that is shown the mask of the faces in it and in all that grows out of it."""
+    labels = values_of(obj.data, "part")
+    inside, around = {}, []
+    for row in obj.data.eigenparts.rows:
+        around = [*around[: row.depth], row.part]
+        for part in around:
+            inside[part] = inside.get(part, np.zeros(len(labels), dtype=bool)) | (labels == row.part)
+    return inside
+
+
+def every_division(obj):
+    for mode in ("NESTED", "FEATURES"):
+        for level in range(obj.data["eigenparts_state"]["hierarchy"]["n_levels"]):
+            bpy.ops.eigenparts.segment(level=level, mode=mode)
+            yield level, mode
+
+
+def test_a_name_stays_on_its_piece_of_surface(nested):
+    """Whatever number that has at another level or in another mode; no other piece gets the name."""
+    default = nested.data.eigenparts.level
+    named = {part: faces for part, faces in with_all_inside(nested).items() if part}
+    for part in named:
+        rows(nested)[part].title = f"Name {part}"
+    for _ in every_division(nested):
+        shown, inside = titles(nested), with_all_inside(nested)
+        for part, faces in named.items():
+            found = [other for other, title in shown.items() if title == f"Name {part}"]
+            same = [
+                other for other, own in inside.items() if other and (own & faces).sum() > 0.99 * (own | faces).sum()
+            ]
+            assert found == same
+    bpy.ops.eigenparts.segment(level=default, mode="NESTED")
+    assert titles(nested).items() >= {part: f"Name {part}" for part in named}.items()
+
+
+def test_names_of_pieces_outlive_a_new_analysis(nested):
+    part = next(part for part in rows(nested) if part)
+    rows(nested)[part].title = "Named"
+    faces = with_all_inside(nested)[part]
+    nested.data.eigenparts.level = 0
+    bpy.context.scene.eigenparts.order = "1"
+    bpy.ops.eigenparts.analyze()
+    (again,) = (part for part, title in titles(nested).items() if title == "Named")
+    own = with_all_inside(nested)[again]
+    assert (own & faces).sum() > 0.9 * (own | faces).sum()
+
+
+def test_names_outlive_a_new_analysis_on_other_levels_and_in_other_modes(nested):
+    bpy.ops.eigenparts.segment(mode="FEATURES")
+    for part in filter(None, rows(nested)):
+        rows(nested)[part].title = f"Name {part}"
+    shown = titles(nested)
+    bpy.ops.eigenparts.segment(mode="NESTED")
+    others = titles(nested)
+    bpy.ops.eigenparts.analyze()
+    assert titles(nested) == others
+    bpy.ops.eigenparts.segment(mode="FEATURES")
+    assert titles(nested) == shown
+
+
+def test_a_name_that_is_taken_back_is_gone_at_every_level(nested):
+    part = next(part for part in rows(nested) if part)
+    first = titles(nested)[part]
+    rows(nested)[part].title = "Named"
+    rows(nested)[part].title = ""
+    assert titles(nested)[part] == first
+    for _ in every_division(nested):
+        assert "Named" not in titles(nested).values()

@@ -126,7 +126,13 @@ def test_faces_are_given_to_another_part_afterwards(analyzed):
 def test_the_panel_of_segment_begins_with_what_the_mesh_shows(analyzed):
     with Undoable() as blender:
         shown = blender.run("segment")
-        assert shown == {"by": "DEFAULT", "mode": "NESTED", "level": analyzed.data.eigenparts.level, "n_parts": 6}
+        assert shown == {
+            "by": "DEFAULT",
+            "mode": "NESTED",
+            "joints": False,
+            "level": analyzed.data.eigenparts.level,
+            "n_parts": 6,
+        }
         shown = blender.run("segment", n_parts=3)
         assert (shown["by"], shown["n_parts"], shown["level"]) == ("N_PARTS", 3, analyzed.data.eigenparts.level)
 

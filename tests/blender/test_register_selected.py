@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 
-from examples import hand
+from examples import hand, humanoid
 from tests.blender.conftest import add_object, everything_on, values_of
 from tests.compute.registration.shapes import lumpy_ball
 
@@ -172,6 +172,19 @@ def test_the_level_of_the_reference_decides(rest, fist):
     np.testing.assert_array_equal(values_of(rest.data, "part"), labels)
     assert (rest.data.eigenparts.level, rest.data.eigenparts.mode) == (2, "FEATURES")
     assert agreement(rest, fist) > 0.93
+
+
+def test_joints_of_the_reference_are_on_every_pose(fresh_scene):
+    """They are carried over, wherever the limbs of the others narrow."""
+    character = humanoid(6000)
+    add_pose(character, "walk", seed=0)
+    rest = add_pose(character, "rest")
+    bpy.ops.eigenparts.analyze()
+    bpy.ops.eigenparts.segment(joints=True)
+    bpy.ops.eigenparts.register_selected()
+    walk = bpy.data.objects["walk"]
+    np.testing.assert_array_equal(np.unique(values_of(walk.data, "part")), np.unique(values_of(rest.data, "part")))
+    assert agreement(rest, walk) > 0.95
 
 
 def test_a_mirrored_mesh_is_registered_as_told(rest, fist):

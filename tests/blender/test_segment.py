@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze
-from tests.blender.conftest import everything_on, values_of
+from examples import humanoid
+from tests.blender.conftest import add_object, everything_on, values_of
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +30,77 @@ def test_the_mode_stays_until_another_is_chosen(analyzed, engine):
     bpy.ops.eigenparts.analyze()
     assert analyzed.data.eigenparts.mode == "FEATURES"
     np.testing.assert_array_equal(values_of(analyzed.data, "part"), engine.segment(mode="features").labels)
+
+
+def triangles_of(mesh):
+    mesh.calc_loop_triangles()
+    vertices = np.array([vertex.co for vertex in mesh.vertices])
+    return TriangleMesh(vertices, np.array([triangle.vertices for triangle in mesh.loop_triangles]))
+
+
+@pytest.fixture
+def humanoid_mesh(scene):
+    """An analyzed body with limbs that have joints."""
+    return scene(analyzed_humanoid).data
+
+
+def analyzed_humanoid():
+    character = humanoid(6000)
+    add_object(character.mesh_in_pose("rest"), character.quads.tolist(), "humanoid")
+    bpy.ops.eigenparts.analyze()
+
+
+def test_joints_stay_while_the_level_moves(humanoid_mesh):
+    settings = humanoid_mesh.eigenparts
+    analysis = analyze(triangles_of(humanoid_mesh))
+    assert not settings.joints
+    settings.joints = True
+    for level in range(analysis.hierarchy.n_levels):
+        settings.level = level
+        assert settings.joints
+        assert settings.mode == "NESTED"
+        assert settings.n_parts == analysis.segment(level=level, joints=True).n_parts
+    bpy.ops.eigenparts.segment()
+    assert settings.n_parts == analysis.segment(joints=True).n_parts > analysis.segment().n_parts
+    settings.joints = False
+    assert settings.n_parts == analysis.segment().n_parts
+
+
+def test_joints_can_be_asked_for_by_scripts(humanoid_mesh):
+    n_parts = humanoid_mesh.eigenparts.n_parts
+    bpy.ops.eigenparts.segment(joints=True)
+    with_joints = humanoid_mesh.eigenparts.n_parts
+    assert with_joints > n_parts
+    bpy.ops.eigenparts.segment(mode="NESTED")
+    assert humanoid_mesh.eigenparts.n_parts == with_joints
+    bpy.ops.eigenparts.segment(joints=False)
+    assert humanoid_mesh.eigenparts.n_parts == n_parts
+
+
+def test_features_have_no_joints(humanoid_mesh):
+    bpy.ops.eigenparts.segment(joints=True)
+    bpy.ops.eigenparts.segment(mode="FEATURES")
+    assert not humanoid_mesh.eigenparts.joints
+    before = everything_on(humanoid_mesh)
+    with pytest.raises(RuntimeError, match="nested parts only"):
+        bpy.ops.eigenparts.segment(joints=True)
+    assert everything_on(humanoid_mesh) == before
+
+
+def test_corrections_and_names_stay_on_what_a_joint_cuts_off(humanoid_mesh):
+    settings = humanoid_mesh.eigenparts
+    bpy.ops.eigenparts.segment(joints=True)
+    hand = max(row.part for row in settings.rows)
+    next(row for row in settings.rows if row.part == hand).title = "Hand"
+    bpy.ops.eigenparts.split_part(part=hand, position=0.5)
+    labels = values_of(humanoid_mesh, "part")
+    settings.level -= 1
+    settings.level += 1
+    np.testing.assert_array_equal(values_of(humanoid_mesh, "part"), labels)
+    assert next(row for row in settings.rows if row.part == hand).title == "Hand"
+    bpy.ops.eigenparts.analyze()
+    np.testing.assert_array_equal(values_of(humanoid_mesh, "part"), labels)
+    assert next(row for row in settings.rows if row.part == hand).title == "Hand"
 
 
 def test_every_level_can_be_reached_from_the_panel(analyzed, engine):

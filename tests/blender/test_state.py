@@ -123,6 +123,17 @@ def close_below_all_levels(obj):
     state_of(obj)["tree_0"]["closing"]["values"] = [-7] * len(state_of(obj)["tree_0"]["part"]["values"])
 
 
+def point_a_twin_nowhere(obj):
+    tree = state_of(obj)["tree_0"]
+    tree["twin"]["values"] = [10**6] * len(tree["part"]["values"])
+
+
+def close_at_necks_that_are_saddles(obj):
+    tree = state_of(obj)["tree_0"]
+    tree["neck"]["values"] = list(range(len(tree["part"]["values"])))
+    tree["n_necks"] = len(tree["part"]["values"])
+
+
 def drop_a_measure(obj):
     del state_of(obj)["tree_0"]["roundness"]
 
@@ -143,6 +154,8 @@ def leave_a_bare_number(obj):
         put_text_for_numbers,
         name_a_huge_part,
         close_below_all_levels,
+        point_a_twin_nowhere,
+        close_at_necks_that_are_saddles,
         drop_a_measure,
         leave_a_bare_number,
     ],
@@ -160,7 +173,7 @@ def test_the_columns_of_a_state_are_those_that_saved_files_have(analyzed):
     state = state_of(analyzed)
     assert state["schema"] == 2
     tree = {"is_of_maxima", "n_roots", "n_features", "parent", "part", "extremum", "saddle", "closing"}
-    tree |= {"joint_part", "joint_closing"}
+    tree |= {"joint_part", "joint_closing", "twin", "neck", "neck_closing", "n_necks"}
     assert set(state["tree_0"].keys()) == tree | {"height", "closing_length", "longest", "roundness"}
     assert set(state["branches_0"].keys()) == {"arc", "shown", "area", "n_faces", "borders", "border_length"}
     assert set(state["hierarchy"].keys()) == {"pairs", "persistence", "is_maximum", "value_range", "n_levels"}

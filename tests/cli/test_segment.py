@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from compute import TriangleMesh, analyze
+from examples import humanoid
 from tests.cli.files import add_object, write_off
 from tests.shapes import icosphere, joined, star
 from tools.extension import load_extension
@@ -114,6 +115,20 @@ def test_the_mode_decides_about_blunt_ends(run, tmp_path, mode, n_parts):
     EXPORTERS[".ply"](str(tmp_path / "bumpy.ply"))
     _, report, _ = run("segment", tmp_path / "bumpy.ply", "--threshold", 1e-3, "--mode", mode, "--json")
     assert len(report["files"][0]["objects"][0]["parts"]) == n_parts
+
+
+def test_joints_and_twins_are_in_the_report(run, tmp_path):
+    character = humanoid(6000)
+    add_object(TriangleMesh(character.vertices, character.triangles))
+    EXPORTERS[".ply"](str(tmp_path / "humanoid.ply"))
+    n_parts = {}
+    for joints in ([], ["--joints"]):
+        _, report, _ = run("segment", tmp_path / "humanoid.ply", *joints, "--json")
+        parts = report["files"][0]["objects"][0]["parts"]
+        n_parts[report["files"][0]["settings"]["mode"]] = len(parts)
+        mirror = {part["id"]: part["mirror"] for part in parts}
+        assert sum(twin is not None and mirror[twin] == part for part, twin in mirror.items()) >= 4
+    assert n_parts["jointed"] > n_parts[None]
 
 
 def test_one_bad_file_does_not_stop_the_rest(run, star_off, tmp_path):

@@ -31,6 +31,15 @@ def test_a_report_is_read_as_it_was_written(read):
 
 
 @pytest.mark.parametrize(
+    ("twin", "is_read"), [({}, True), ({"mirror": None}, True), ({"mirror": 2}, True), ({"mirror": "2"}, False)]
+)
+def test_twins_are_numbers_or_none_or_not_told(read, twin, is_read):
+    part = {"id": 1, "name": "part_1", "parent": 0, "area": 1.5, "faces": 3, **twin}
+    report = {**GOOD, "objects": [{**ROW, "parts": [part]}]}
+    assert read(report).report == (report if is_read else None)
+
+
+@pytest.mark.parametrize(
     "value",
     [
         b"[" * 200_000,

@@ -10,7 +10,7 @@ from compute.registration.dense import by_shape, confidence, deformation_graph, 
 from compute.registration.eigenfunctions import confidence as map_confidence
 from compute.registration.eigenfunctions import hypotheses, map_scoring, spectral_shape, zoomout
 from compute.registration.parts import part_matching
-from compute.segmentation.hierarchy import arc_measures, levels, nesting
+from compute.segmentation.hierarchy import arc_measures, levels, necks, nesting
 from compute.skeletons import bends, binding
 from compute.surface import bridging
 from tests.docs.pages import ROOT
@@ -32,6 +32,7 @@ METHOD = {
     "default level": f"above {percent(levels.DEFAULT_THRESHOLD)} of the range",
     "blunt": f"< {nesting.BLUNT:g} ",
     "neck of the body": f"< {nesting.NECK:g} ",
+    "joint": f"l / min(m, m') < {necks.NARROW:g},  l²/area < {necks.SLENDER:g} ",
     "samples": f"at {spectral_shape.N_SAMPLES} points",
     "sizes of the map": f"from {zoomout.MATCHING_SIZES[0]} to {zoomout.MATCHING_SIZES[-1]}",
     "tearing": f"({map_scoring.USUAL_TEARING:g} + τ)",
@@ -49,7 +50,7 @@ METHOD = {
     "step": f"lengthened by {nonrigid_alignment.RELAXATION:g}",
     "gap": f"(gap / {confidence.DOUBTFUL_GAP:g})²",
     "stretch": f"ln {confidence.DOUBTFUL_STRETCH:g})⁴",
-    "joint": f"{bends.BEND:g} · number of joints",
+    "cost of a joint": f"{bends.BEND:g} · number of joints",
     "neck of a limb": f"thinner than {bends.NECK:g} of",
     "softness": f"limb: {binding.SOFTNESS:g} of its radius",
 }

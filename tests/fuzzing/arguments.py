@@ -151,6 +151,7 @@ MAKERS: dict[str, Maker] = {
     "threshold": lambda case: case._choice(None, case.number),
     "n_parts": lambda case: case._choice(None, int(case.rng.integers(-1, 9))),
     "essential": lambda case: case._choice(False, True),
+    "joints": lambda case: case._choice(False, True),
     "within": lambda case: case._choice(None, int(case.rng.choice(case.analysis.segment().parts.id)), 99),
     "labels": lambda case: case.labels,
     "poses": lambda case: case.usual([], [case.pose] * 2, wrong=([case.pose[1:]], [case.pose * np.nan])),

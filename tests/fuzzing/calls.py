@@ -27,10 +27,20 @@ INNER = {
     *("corrected_crossings", "cross_edges", "divisible", "drawn_borders", "exact_labels", "face_graph"),
     *("first_own_part", "hill_of"),
     *("joined_parts", "label_branches", "label_mapped", "lie_together", "majority_of_polygons", "map_to_reference"),
-    *("match_divisible", "match_members", "match_shape_diagrams", "mixed", "naming", "needs_faces", "number_behind"),
+    *("match_divisible", "match_members", "match_shape_diagrams", "mixed", "mode_of", "naming", "needs_faces"),
+    *("number_behind", "reading_of"),
     *("places_at_all_levels", "point_warnings", "prepare_reference", "redraw", "relief_of", "renumbered", "section"),
-    *("shortened_borders", "sides", "silent", "taken_over", "tracked_parts", "undivided", "vertex_heights"),
-    *("visible_parts", "welded_vertices", "with_parts"),
+    *(
+        "shortened_borders",
+        "sides",
+        "silent",
+        "taken_over",
+        "tracked_parts",
+        "tracked_pieces",
+        "undivided",
+        "vertex_heights",
+    ),
+    *("visible_parts", "welded_vertices", "with_parts", "without_necks"),
 }
 
 

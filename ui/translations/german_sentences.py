@@ -96,6 +96,7 @@ GERMAN_SENTENCES: dict[str, str] = {
     "The number of parts is at least 1, not {}.": "Die Zahl der Teile ist mindestens 1, nicht {}.",
     "This shape cannot be divided into exactly {} parts; it has {} now.": "Diese Gestalt lässt sich nicht in genau {} Teile teilen; sie hat jetzt {}.",
     "Give a level, a threshold or a number of parts, not several of them.": "Eine Stufe, eine Schwelle oder eine Zahl von Teilen angeben, nicht mehreres davon.",
+    'Joints are cut in nested parts only; choose the mode "nested", or leave joints out.': "Gelenke gibt es nur in verschachtelten Teilen; den Modus „nested“ wählen, oder ohne Gelenke.",
     'The mode is "features" or "nested", not "{}".': "Der Modus ist „features“ oder „nested“, nicht „{}“.",
     "Only parts of the mesh's own field have borders inside triangles; these end at edges.": "Nur Teile aus dem eigenen Feld des Netzes haben Grenzen innerhalb von Dreiecken; diese enden an Kanten.",
     "Part {} has {} faces at this level, too few to be divided further.": "Teil {} hat auf dieser Stufe {} Flächen, zu wenige zum weiteren Teilen.",

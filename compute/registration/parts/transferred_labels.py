@@ -104,9 +104,9 @@ class GivenParts:
     ----------
     labels : (F,) int
         Of the reference's faces.
-    id, parent : (P,) int64
+    id, parent, mirror : (P,) int64
     is_drawn : (P,) bool
-        Whether a part was made by hand: there is no feature that a target must have for it.
+        Whether a part was made by hand or ends at a joint: there is no feature that a target must have for it.
     shares : (n, 1 + P) float64
         Share of the area around each of the reference's points that is body, and that is each part.
     """
@@ -114,6 +114,7 @@ class GivenParts:
     labels: Ints
     id: Ints
     parent: Ints
+    mirror: Ints
     is_drawn: Bools
     shares: Floats
 
@@ -132,6 +133,7 @@ def given_parts(labels: Ints, parts: Parts, reference: Divisible) -> GivenParts:
         labels=labels,
         id=ids,
         parent=parts.parent[is_part],
+        mirror=parts.mirror[is_part],
         is_drawn=parts.saddle[is_part] < 0,
         shares=shares[:, np.append(BODY, ids)],
     )
@@ -195,12 +197,13 @@ def _connected(labels: Ints, graph: FaceGraph) -> Ints:
 def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, target: Divisible) -> Parts:
     """Return the table of parts: origins from the arcs where these are cut off, from the reference otherwise."""
     n = 1 + max(int(labels.max(initial=BODY)), given.highest)
-    parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
+    parent, (extremum, saddle, mirror) = np.zeros(n, dtype=np.int64), np.full((3, n), -1)
     known = by_arcs.parts.id < n
     origin = by_arcs.parts.id[known]
     parent[origin] = by_arcs.parts.parent[known]
     extremum[origin], saddle[origin] = by_arcs.parts.extremum[known], by_arcs.parts.saddle[known]
-    parent[given.id] = given.parent
+    mirror[origin] = by_arcs.parts.mirror[known]
+    parent[given.id], mirror[given.id] = given.parent, given.mirror
     area, count = sum_by(labels, target.graph.area, n), np.bincount(labels, minlength=n)
     ids = np.flatnonzero(count)
     return Parts(
@@ -210,4 +213,5 @@ def _table_of_parts(given: GivenParts, labels: Ints, by_arcs: BranchLabels, targ
         saddle=saddle[ids],
         area=area[ids],
         n_triangles=count[ids],
+        mirror=np.where(np.isin(mirror[ids], ids), mirror[ids], -1),
     )

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...fields.scalar_field import ScalarField
+from ...fields.scalar_field import ScalarField, steepness
 from ...surface.cleaning import Surface
 from ...surface.mesh import Bools, Floats, Ints, sum_by
 from ..faces.arc_areas import ArcAreas
@@ -69,20 +69,11 @@ def border_costs(surface: Surface, field: ScalarField) -> Floats:
     mesh, heights = surface.mesh, field.values[: len(surface.mesh.vertices)]
     ends = mesh.edges.vertices[mesh.edges.shared]
     length = np.linalg.norm(mesh.vertices[ends[:, 1]] - mesh.vertices[ends[:, 0]], axis=1)
-    steepness = _steepness(mesh.vertices[mesh.triangles], heights[mesh.triangles])
-    steepest = length * steepness[mesh.edges.neighbours].mean(axis=1)
+    slope = steepness(mesh.vertices[mesh.triangles], heights[mesh.triangles])
+    steepest = length * slope[mesh.edges.neighbours].mean(axis=1)
     rise = np.abs(heights[ends[:, 1]] - heights[ends[:, 0]])
     slant = np.minimum(1.0, np.divide(rise, steepest, out=np.zeros_like(rise), where=steepest > 0))
     return length * (1 + SLANT * slant**2) * crease_costs(surface, N_RINGS)
-
-
-def _steepness(corners: Floats, heights: Floats) -> Floats:
-    """Return the length of the gradient in triangles (T, 3, 3), 0 where one has collapsed."""
-    first, second = (corners[:, [1, 2]] - corners[:, :1]).swapaxes(0, 1)
-    rises = heights[:, [1, 2]] - heights[:, :1]
-    across = np.linalg.norm(rises[:, :1] * second - rises[:, 1:] * first, axis=1)
-    area = np.linalg.norm(np.cross(first, second), axis=1)
-    return np.divide(across, area, out=np.zeros_like(area), where=area > 0)
 
 
 def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, cost: Floats) -> PartTree:
@@ -106,7 +97,7 @@ def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, c
        the least sum of a set's perimeter and of its difference from a given one.
     """
     shown = [
-        _Borders(tree, is_end & tree.has_saddle, arc.copy(), share, graph, cost).moved()[graph.stands_for]
+        _moved_arcs(tree, is_end & tree.has_saddle, arc, share, graph, cost)[graph.stands_for]
         for tree, is_end, arc, share in zip(
             part_tree.trees, part_tree.ends, part_tree.arcs_of_faces, shares, strict=True
         )
@@ -114,12 +105,23 @@ def along_edges(part_tree: PartTree, shares: list[ArcAreas], graph: FaceGraph, c
     return replace(part_tree, branches=connected_branches(part_tree.arcs_of_faces, graph, shown))
 
 
+def _moved_arcs(tree: ArcTree, is_end: Bools, arc: Ints, shares: ArcAreas, graph: FaceGraph, cost: Floats) -> Ints:
+    """Return the arc (F,) that each face is shown in; borders at necks come last, and leave the others as they are."""
+    no_end = np.zeros_like(is_end)
+    moved = _Borders(tree, is_end & ~tree.is_neck, no_end, arc.copy(), shares, graph, cost).moved()
+    return _Borders(tree, is_end & tree.is_neck, is_end & ~tree.is_neck, moved, shares, graph, cost).moved()
+
+
 @dataclass(frozen=True, eq=False)
 class _Borders:
-    """The borders of the parts of a tree while they are moved; ``arc`` changes."""
+    """The borders of the parts of a tree while they are moved; ``arc`` changes.
+
+    Those at ``is_end`` are moved, between those at ``is_kept``, which stay.
+    """
 
     tree: ArcTree
     is_end: Bools
+    is_kept: Bools
     arc: Ints
     shares: ArcAreas
     graph: FaceGraph
@@ -136,17 +138,23 @@ class _Borders:
     def moved(self) -> Ints:
         """Move all borders, those that are next to each other at once: what is symmetric stays so."""
         is_core, is_done = self._cores(), np.zeros(len(self.tree.parent), dtype=bool)
-        depth = self._depth()
+        depth, kept = self._depth(), self._regions(self.is_kept)
         for number in range(1, 1 + int(depth.max(initial=0))):
             ends = np.flatnonzero(depth == number).tolist()
             insides = [self.tree.subtree(end) for end in ends]
             is_taken = is_done | np.logical_or.reduce(insides)
             # What a part wins belongs to no other that is as deep; what it loses was its own.
-            fixed = [is_done | (is_taken & ~inside) for inside in insides]
+            fixed = [
+                is_done | (is_taken & ~inside) | (kept != kept[end]) for end, inside in zip(ends, insides, strict=True)
+            ]
             moves = [self._move(inside, arcs, is_core) for inside, arcs in zip(insides, fixed, strict=True)]
             self._apply(ends, moves)
             is_done = is_taken
         return self.arc
+
+    def _regions(self, is_end: Bools) -> Ints:
+        """Return (A,) the number of what some ends do not divide that each arc lies in."""
+        return self.tree.spread(np.where(is_end, 1 + np.arange(len(is_end)), 0))
 
     def _depth(self) -> Ints:
         """Return (A,) how deep the ends inside each end are nested, itself counted; 0 where none is."""
@@ -172,7 +180,7 @@ class _Borders:
 
     def _cores(self) -> Bools:
         """Mask (F,) of the faces that stay: those farthest from the borders of what is never divided."""
-        region = self.tree.spread(np.where(self.is_end, 1 + np.arange(len(self.is_end)), 0))
+        region = self._regions(self.is_end | self.is_kept)
         faces, ring = self._rings(self._crossing(region))
         far = np.full(len(self.arc), N_RINGS + 1)
         far[faces] = ring

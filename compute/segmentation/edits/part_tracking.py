@@ -105,6 +105,35 @@ def tracked_parts(parts: Iterable[int], old: PartTree, new: PartTree, area: Floa
     return tracked
 
 
+def tracked_pieces(pieces: Iterable[int], old: PartTree, new: PartTree, area: Floats, mode: str) -> dict[int, int]:
+    """Return what each of some pieces is in another analysis of the same faces, as far as it is found there.
+
+    Parameters
+    ----------
+    pieces : iterable of int
+        Places of arcs among those of all trees of the old analysis.
+    old, new : PartTree
+        Of two analyses of a mesh.
+    area : (F,) float64
+        Of its faces.
+    mode : "nested", "features" or "jointed"
+        How levels are read.
+    """
+    before = np.cumsum([0, *(len(tree.parent) for tree in new.trees)])
+    candidates = {
+        (tree, arc): (int(before[tree]) + arc, level) for (tree, arc), (_, level) in _candidates(new, mode).items()
+    }
+    tracked: dict[int, int] = {}
+    for piece in sorted(pieces):
+        try:
+            same = _same_part(old.faces_of_piece(piece), new, area, candidates)
+        except LookupError:
+            same = None
+        if same is not None and same[0] not in tracked.values():
+            tracked[piece] = same[0]
+    return tracked
+
+
 def renumbered(
     items: tuple[Correction, ...], tracked: dict[int, tuple[int, int]], old: Hierarchy, new: Hierarchy
 ) -> tuple[Correction, ...]:

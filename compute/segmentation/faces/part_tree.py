@@ -5,13 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
-from ...choices import FEATURES, NESTED
+from ...choices import FEATURES, JOINTED, NESTED
 from ...surface.mesh import Bools, Floats, Ints, sum_by
 from ...surface.ties import ROUNDING
 from ..hierarchy.arc_measures import ArcMeasures
 from ..hierarchy.arc_tree import ArcTree
 from ..hierarchy.levels import Hierarchy
-from ..hierarchy.nesting import nested_cuts, numbered
+from ..hierarchy.nesting import joint_cuts, nested_cuts, numbered
 from .branches import Branches
 
 # Peak memory of dividing the faces and of tracing their borders, for each vertex of the net (docs/method.md).
@@ -84,7 +84,7 @@ class PartTree:
         Parameters
         ----------
         level : int
-        mode : "nested" or "features"
+        mode : "nested", "features" or "jointed"
         branch_levels : tuple of (part, level)
             Parts inside which another level counts; their own borders stay.
         """
@@ -100,12 +100,31 @@ class PartTree:
             cuts = self._numbered(is_cut)
         return cuts
 
+    def pieces_of_parts(
+        self, level: int, mode: str = NESTED, branch_levels: tuple[tuple[int, int], ...] = ()
+    ) -> dict[int, int]:
+        """Return for each part that is cut off on a level the place of its arc among those of all trees.
+
+        The arc tells what piece of the surface it is: at other levels that may have another number.
+        """
+        cuts = np.concatenate(self.cut_arcs(level, mode, branch_levels))
+        arcs = np.flatnonzero(cuts)
+        return dict(zip(cuts[arcs].tolist(), arcs.tolist(), strict=True))
+
+    def faces_of_piece(self, piece: int) -> Bools:
+        """Mask (F,) of the faces of a piece, by the place of its arc among those of all trees."""
+        for tree, arcs in enumerate(self.trees):
+            if piece < len(arcs.parent):
+                return self.faces_inside(tree, piece)
+            piece -= len(arcs.parent)
+        raise LookupError(piece)
+
     @property
     def ends(self) -> list[Bools]:
-        """For each tree, the mask (A,) of the arcs at which parts end at some level, in either mode."""
+        """For each tree, the mask (A,) of the arcs at which parts end at some level, in any mode."""
         last, default_level = self.hierarchy.n_levels - 1, self.hierarchy.default_level
-        # Beyond the default level nested parts only become more.
-        levels = {NESTED: (*range(default_level + 1), last), FEATURES: range(last + 1)}
+        # Beyond the default level nested parts only become more, and with joints they are the same and more.
+        levels = {JOINTED: (*range(default_level + 1), last), FEATURES: range(last + 1)}
         cuts = [self._cut_at_level(level, mode) for mode, chosen in levels.items() for level in chosen]
         return [np.logical_or.reduce(of_tree) for of_tree in zip(*cuts, strict=True)]
 
@@ -132,9 +151,15 @@ class PartTree:
         if mode == FEATURES:
             return [tree.is_feature(level) for tree in self.trees]
         default_level = self.hierarchy.default_level
-        return [
+        cuts = [
             nested_cuts(tree, measures, shares, level=level, default_level=default_level)
             for tree, measures, shares in zip(self.trees, self.measures, self._shares_of_shells, strict=True)
+        ]
+        if mode == NESTED:
+            return cuts
+        return [
+            is_cut | joint_cuts(tree, is_cut, level=level, default_level=default_level)
+            for tree, is_cut in zip(self.trees, cuts, strict=True)
         ]
 
     @cached_property

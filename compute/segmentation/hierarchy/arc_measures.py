@@ -50,7 +50,7 @@ def measure_arcs(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcMeasures:
     field : ScalarField
     """
     rising = -field.values if tree.is_of_maxima else field.values
-    bottom, top = _ends(rising, tree)
+    bottom, top = ends_of_arcs(rising, tree)
     height = np.where(tree.has_saddle, top - bottom, 0.0) / max(field.value_range, float(np.finfo(float).tiny))
     tall = np.flatnonzero(height > LEAST_HEIGHT)
     levels = top[tall, None] - (top - bottom)[tall, None] * (np.arange(N_SAMPLES) + 0.05) / N_SAMPLES
@@ -96,7 +96,7 @@ def _roundness(part: Ints, length: Floats, area: Floats) -> Floats:
     return roundness
 
 
-def _ends(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
+def ends_of_arcs(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
     """Return the values between which each arc lies: where its leaf is or its children close, and where it closes."""
     # What closes at no saddle has no upper end; any number will do there.
     top = np.where(tree.has_saddle, values[tree.saddle], 0.0)
@@ -109,11 +109,16 @@ def _ends(values: Floats, tree: ArcTree) -> tuple[Floats, Floats]:
 def _level_set_length(heights: Floats, corners: Floats, level: float) -> float:
     """Return the length of a level set in triangles (m, 3) whose corners (m, 3, 3) are sorted by height."""
     crossed = (heights[:, 0] < level) & (level < heights[:, 2])
-    a, b, c = heights[crossed].T
-    low, middle, high = corners[crossed].swapaxes(0, 1)
+    return float(lengths_across(heights[crossed], corners[crossed], np.array(level)).sum())
+
+
+def lengths_across(heights: Floats, corners: Floats, level: Floats) -> Floats:
+    """Return the length of a level set in each triangle that it crosses, with corners (m, 3, 3) sorted by height."""
+    a, b, c = heights.T
+    low, middle, high = corners.swapaxes(0, 1)
     below = level <= b
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(below, (level - a) / (b - a), (level - b) / (c - b))[:, None]
     short_side = np.where(below[:, None], low + share * (middle - low), middle + share * (high - middle))
     long_side = low + ((level - a) / (c - a))[:, None] * (high - low)
-    return float(np.linalg.norm(long_side - short_side, axis=1).sum())
+    return np.linalg.norm(long_side - short_side, axis=1)

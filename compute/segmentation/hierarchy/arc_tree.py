@@ -5,6 +5,7 @@ A part is always a subtree, so a segmentation at any level is one label for each
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +19,8 @@ NO_SADDLE = -1
 ALWAYS = -1
 # Likewise: no level reaches it. More than any number of pairs, and no more than a .blend can hold.
 NEVER = int(np.iinfo(np.int32).max)
+# In the place of a neck: the arc closes at none.
+NO_NECK = -1
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +51,16 @@ class ArcTree:
     joint_part, joint_closing : (A,) int64
         The same for the two that a symmetry of the shape maps onto each other: the less of ``part`` and of ``closing``,
         so that twins appear and are cut off together. Equal to these where there is no twin.
+    twin : (A,) int64
+        The arc that a symmetry maps each arc onto; itself where there is none.
+    neck : (A,) int64
+        The place of the neck at which the arc closes by falling strength, over all trees; ``NO_NECK`` where it is
+        none. At a neck a limb narrows, and the field has no saddle: ``saddle`` is a vertex of the level set there, and
+        ``closing`` is ``NEVER``, so that no part ends there unless joints are asked for.
+    neck_closing : (A,) int64
+        How many pairs are stronger than the neck: it counts at all levels above. ``NEVER`` where there is no neck.
+    n_necks : int
+        In all trees.
     """
 
     is_of_maxima: bool
@@ -60,6 +73,10 @@ class ArcTree:
     closing: Ints
     joint_part: Ints
     joint_closing: Ints
+    twin: Ints
+    neck: Ints
+    neck_closing: Ints
+    n_necks: int
 
     @cached_property
     def closing_before(self) -> Ints:
@@ -91,8 +108,13 @@ class ArcTree:
 
     @property
     def has_saddle(self) -> Bools:
-        """Mask (A,) of the arcs that close at a saddle: all but roots and whole shells."""
+        """Mask (A,) of the arcs that close at a saddle or a neck: all but roots and whole shells."""
         return self.saddle != NO_SADDLE
+
+    @property
+    def is_neck(self) -> Bools:
+        """Mask (A,) of the arcs that close at a neck."""
+        return self.neck != NO_NECK
 
     @property
     def has_pair(self) -> Bools:
@@ -156,4 +178,15 @@ def flat_tree(n_parts: int, is_of_maxima: bool) -> ArcTree:
         closing=closing,
         joint_part=part,
         joint_closing=closing,
+        **without_necks(n_arcs),
     )
+
+
+def without_necks(n_arcs: int) -> dict[str, Any]:
+    """Return the columns of a tree in which no arc closes at a neck, or has a twin."""
+    return {
+        "twin": np.arange(n_arcs),
+        "neck": np.full(n_arcs, NO_NECK),
+        "neck_closing": np.full(n_arcs, NEVER),
+        "n_necks": 0,
+    }

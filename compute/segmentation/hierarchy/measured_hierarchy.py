@@ -10,7 +10,8 @@ from ...msc.morse_smale import FieldTopology
 from ...surface.cleaning import Surface
 from ...surface.mesh import Ints
 from .arc_measures import ArcMeasures, measure_arcs
-from .arc_tree import ArcTree
+from .arc_tree import NO_SADDLE, ArcTree
+from .divided_arcs import with_necks
 from .levels import Hierarchy, build_hierarchy
 from .shell_bodies import with_bodies
 from .twins import find_twins
@@ -53,7 +54,7 @@ def measured_hierarchy(
     elif basis is not None and len(basis.functions) == len(field.values):
         hierarchy = _with_twins(hierarchy, field, basis)
     measures = (measure_arcs(tree, arc, field) for tree, arc in zip(hierarchy.trees, arcs, strict=True))
-    return hierarchy, arcs, tuple(measures)
+    return with_necks(hierarchy, arcs, tuple(measures), field)
 
 
 def _with_twins(hierarchy: Hierarchy, field: ScalarField, basis: Eigenbasis) -> Hierarchy:
@@ -73,7 +74,21 @@ def _joined(tree: ArcTree, hierarchy: Hierarchy, field: ScalarField, basis: Eige
     part[leaf.reshape(-1)], closing[end.reshape(-1)] = tree.part, tree.closing[ends]
     joint_closing = tree.closing.copy()
     joint_closing[ends] = np.minimum(closing, closing[twin_saddle])[end.reshape(-1)]
-    return replace(tree, joint_part=np.minimum(part, part[twin])[leaf.reshape(-1)], joint_closing=joint_closing)
+    saddle = np.full(len(tree.parent), NO_SADDLE)
+    saddle[ends] = end.reshape(-1)
+    images = np.append(twin[leaf.reshape(-1)][:, None], np.append(twin_saddle, NO_SADDLE)[saddle][:, None], axis=1)
+    return replace(
+        tree,
+        joint_part=np.minimum(part, part[twin])[leaf.reshape(-1)],
+        joint_closing=joint_closing,
+        twin=_places_of(images, np.column_stack([leaf.reshape(-1), saddle])),
+    )
+
+
+def _places_of(images: Ints, rows: Ints) -> Ints:
+    """Return the place of each image among some rows (A, 2), its own place where it is not there."""
+    place = {(leaf, saddle): number for number, (leaf, saddle) in enumerate(rows.tolist())}
+    return np.array([place.get((leaf, saddle), own) for own, (leaf, saddle) in enumerate(images.tolist())])
 
 
 def _shell_of_vertex(surface: Surface, net: Net) -> Ints:

@@ -46,16 +46,36 @@ def nested_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: in
     return is_cut | tree.is_shell | (is_finer & was_feature & (measures.roundness < HEMISPHERE))
 
 
+def joint_cuts(tree: ArcTree, is_cut: Bools, *, level: int, default_level: int) -> Bools:
+    """Mask (A,) of the arcs that end at a joint of a level: at the necks of the limbs that are cut off.
+
+    Parameters
+    ----------
+    tree : ArcTree
+    is_cut : (A,) bool
+        The arcs that end a part without joints.
+    level : int
+    default_level : int
+        Of the hierarchy, whose features are the limbs.
+    """
+    is_limb, in_limb = tree.is_feature(default_level), np.zeros(len(is_cut), dtype=bool)
+    for arc in range(len(is_cut) - 1, -1, -1):
+        parent = tree.parent[arc]
+        in_limb[arc] = is_cut[arc] if is_limb[arc] else parent != NO_ARC and in_limb[parent]
+    return in_limb & (tree.neck_closing < level)
+
+
 def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
     """Return the number (A,) of the part that is cut off at each arc, 0 where nothing is.
 
     The outermost on the path from a leaf has the leaf's number, so that an arm stays the same part when its fingers
     appear; the others have numbers of their own, beyond those of the leaves.
     """
-    # Numbers of leaves are followed by those of inner parts between maxima, then between minima, then of saddles that
-    # survive always.
+    # Numbers of leaves are followed by those of inner parts between maxima, then between minima, then of joints, then
+    # of saddles that survive always.
     first = 1 + tree.n_roots + tree.n_features * (1 if tree.is_of_maxima else 2)
-    own = np.where(tree.closing == ALWAYS, first_own_part(tree) + np.arange(len(is_cut)), first + tree.closing)
+    own = np.where(tree.is_neck, first_own_part(tree) - tree.n_necks + tree.neck, first + tree.closing)
+    own = np.where(tree.closing == ALWAYS, first_own_part(tree) + np.arange(len(is_cut)), own)
     number = np.zeros(len(is_cut), dtype=np.int64)
     seen: set[int] = set()
     for arc in np.flatnonzero(is_cut)[::-1].tolist():
@@ -67,12 +87,12 @@ def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
 
 def first_own_part(tree: ArcTree) -> int:
     """Return the least number that no part of any level has."""
-    return number_behind(tree.n_roots, tree.n_features)
+    return number_behind(tree.n_roots, tree.n_features, tree.n_necks)
 
 
-def number_behind(n_roots: int, n_features: int) -> int:
-    """Return the number that follows those of leaves and of inner parts of two trees."""
-    return 1 + n_roots + 3 * n_features
+def number_behind(n_roots: int, n_features: int, n_necks: int) -> int:
+    """Return the number that follows those of leaves, of inner parts and of joints of two trees."""
+    return 1 + n_roots + 3 * n_features + n_necks
 
 
 def _worthy_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, candidates: Bools) -> Bools:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...surface.mesh import Ints
-from .arc_tree import ALWAYS, NEVER, NO_ARC, NO_SADDLE, ArcTree
+from .arc_tree import ALWAYS, NEVER, NO_ARC, NO_SADDLE, ArcTree, without_necks
 from .levels import Hierarchy
 
 
@@ -49,4 +49,5 @@ def _with_bodies(tree: ArcTree, shell: Ints) -> ArcTree:
         closing=closing,
         joint_part=part,
         joint_closing=closing,
+        **without_necks(len(part)),
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...msc.merge_tree import MergeTree, ends_of_paths
 from ...surface.mesh import Ints
-from .arc_tree import NEVER, NO_ARC, NO_SADDLE, ArcTree
+from .arc_tree import NEVER, NO_ARC, NO_SADDLE, ArcTree, without_necks
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +73,7 @@ def build_arc_tree(tree: MergeTree, is_of_maxima: bool, features: Features) -> t
         closing=closing,
         joint_part=part,
         joint_closing=closing,
+        **without_necks(len(part)),
     )
     return arcs, _places(tree, features, leaf, events, chains)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...choices import MODES
+from ...choices import READINGS
 from ...surface.mesh import Ints
 from ..faces.part_tree import PartTree
 from .part_labels import BODY, BranchLabels, label_branches
@@ -118,7 +118,7 @@ def places_at_all_levels(part_tree: PartTree, n_colours: int) -> dict[int, int]:
     levels = [default_level, *(level for level in range(n_levels) if level != default_level)]
     together = (
         visible_parts(label_branches(part_tree, level=level, mode=mode), part_tree)
-        for mode in MODES
+        for mode in READINGS
         for level in levels
     )
     return colour_places(together, n_colours)

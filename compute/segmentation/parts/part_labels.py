@@ -7,7 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ...choices import MODES, NESTED
+from ...choices import JOINTED, NESTED, READINGS
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
 from ..borders.level_set_borders import Polyline
@@ -33,11 +33,14 @@ class Parts:
         Id of the part in the table that it grows out of; 0 for the body, and for what grows out of the body or of
         nothing.
     extremum, saddle : (P,) int64
-        Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body.
+        Net vertices: the tip of the part and the saddle it is cut off at; -1 for the body, and no saddle for what ends
+        at a joint.
     area : (P,) float64
         In the mesh's unit of length, squared.
     n_triangles : (P,) int64
         How many faces carry the label.
+    mirror : (P,) int64
+        Id of the part in the table that a symmetry of the shape maps it onto; -1 where there is none.
     """
 
     id: Ints
@@ -46,6 +49,7 @@ class Parts:
     saddle: Ints
     area: Floats
     n_triangles: Ints
+    mirror: Ints
 
     def __len__(self) -> int:
         return len(self.id)
@@ -143,8 +147,9 @@ def label_branches(
         Least persistence of a part, as a fraction of the field's range.
     n_parts : int, optional
         Number of labels, the body included; where it cannot be reached, the largest below it.
-    mode : "nested" or "features"
-        The features and what lies between them when all levels up to this one are overlaid, or the features alone.
+    mode : "nested", "features" or "jointed"
+        The features and what lies between them when all levels up to this one are overlaid, or the features alone, or
+        the first with limbs cut at their joints.
     corrections : Corrections, optional
         Changes made by hand; they refer to these branches.
 
@@ -153,7 +158,7 @@ def label_branches(
     LevelError
         If the level or the mode does not exist, or more than one of the three choices is given.
     """
-    if mode not in MODES:
+    if mode not in READINGS:
         raise LevelError(f'The mode is "features" or "nested", not "{mode}".')
     if sum(choice is not None for choice in (level, threshold, n_parts)) > 1:
         raise LevelError("Give a level, a threshold or a number of parts, not several of them.")
@@ -166,6 +171,26 @@ def label_branches(
     if mode == NESTED and labels.level >= max(1, hierarchy.default_level) and len(labels.parts) == 1:
         return replace(labels, warnings=(NOTHING_STANDS_OUT,))
     return labels
+
+
+def reading_of(mode: str, joints: bool) -> str:
+    """Return how levels are read: in a mode, with or without joints.
+
+    Raises
+    ------
+    LevelError
+        If joints are asked for among features alone.
+    """
+    if not joints:
+        return mode
+    if mode != NESTED:
+        raise LevelError('Joints are cut in nested parts only; choose the mode "nested", or leave joints out.')
+    return JOINTED
+
+
+def mode_of(reading: str) -> str:
+    """Return the mode of a way in which levels are read: joints are cut in nested parts."""
+    return NESTED if reading == JOINTED else reading
 
 
 def _at_level(part_tree: PartTree, mode: str, corrections: Corrections, level: int) -> BranchLabels:
@@ -212,21 +237,25 @@ def _reach_number(at_level: Callable[[int], BranchLabels], n_levels: int, n_part
 
 @dataclass(frozen=True, eq=False)
 class _Origins:
-    """By number of the part: what it grows out of, its tip, and the saddle it is cut off at."""
+    """By number of the part: what it grows out of, its tip, the saddle it is cut off at, and its twin."""
 
     parent: Ints
     extremum: Ints
     saddle: Ints
+    mirror: Ints
 
 
 def _origins(part_tree: PartTree, cuts: list[Ints]) -> _Origins:
     n = 1 + max(int(cut.max(initial=0)) for cut in cuts)
-    parent, extremum, saddle = np.zeros(n, dtype=np.int64), np.full(n, -1), np.full(n, -1)
+    parent, (extremum, saddle, mirror) = np.zeros(n, dtype=np.int64), np.full((3, n), -1)
     for tree, cut in zip(part_tree.trees, cuts, strict=True):
         arcs = np.flatnonzero(cut > BODY)
-        extremum[cut[arcs]], saddle[cut[arcs]] = tree.extremum[arcs], tree.saddle[arcs]
+        extremum[cut[arcs]] = tree.extremum[arcs]
+        saddle[cut[arcs]] = np.where(tree.is_neck[arcs], -1, tree.saddle[arcs])
         parent[cut[arcs]] = tree.spread(cut)[tree.parent[arcs]]
-    return _Origins(parent, extremum, saddle)
+        twin = cut[tree.twin[arcs]]
+        mirror[cut[arcs]] = np.where((twin > BODY) & (twin != cut[arcs]), twin, -1)
+    return _Origins(parent, extremum, saddle, mirror)
 
 
 def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Parts:
@@ -234,14 +263,18 @@ def _tabulate(labelling: Labelling, origins: _Origins, pieces: Branches) -> Part
     n_faces = sum_by(labelling.of_branch, pieces.n_faces.astype(float)).astype(np.int64)
     ids = np.flatnonzero(n_faces > 0)
     n_new = max(0, len(labelling.parent) - len(origins.saddle))
-    extremum, saddle = (np.pad(column, (0, n_new), constant_values=-1) for column in (origins.extremum, origins.saddle))
+    extremum, saddle, mirror = (
+        np.pad(column, (0, n_new), constant_values=-1)[ids]
+        for column in (origins.extremum, origins.saddle, origins.mirror)
+    )
     return Parts(
         id=ids,
         parent=listed_parents(labelling.parent, ids)[ids],
-        extremum=extremum[ids],
-        saddle=saddle[ids],
+        extremum=extremum,
+        saddle=saddle,
         area=area[ids],
         n_triangles=n_faces[ids],
+        mirror=np.where(np.isin(mirror, ids), mirror, -1),
     )
 
 

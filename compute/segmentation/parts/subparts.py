@@ -40,6 +40,7 @@ def inserted(
         "saddle": _nearest(finer_net, net, finer.parts.saddle[added]),
         "area": finer.parts.area[added],
         "n_triangles": finer.parts.n_triangles[added],
+        "mirror": np.where(finer.parts.mirror[added] < 0, -1, _renumbered(finer.parts.mirror[added], part, first)),
     }
     joined = {name: np.concatenate([getattr(whole.parts, name), column]) for name, column in columns.items()}
     is_divided = joined["id"] == part

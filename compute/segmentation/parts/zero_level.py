@@ -35,6 +35,7 @@ def divide_at_zero(field: ScalarField, mesh: TriangleMesh, surface: Surface) -> 
         saddle=np.full(len(ids), -1),
         area=sum_by(labels, mesh.areas)[1:],
         n_triangles=count[1:],
+        mirror=np.full(len(ids), -1),
     )
     trace = partial(_zero_lines, field, mesh, surface, labels)
     return Segmentation(labels.astype(np.int32), parts, 0, _trace=trace)
