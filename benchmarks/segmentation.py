@@ -35,6 +35,7 @@ class Row:
     n_parts: int
     features: float
     nested: float
+    jointed: float
     clustering: float
     people: float
     nested_by_threshold: dict[float, float]
@@ -79,6 +80,7 @@ def _measure(path: Path) -> Row:
         nested.n_parts,
         _mean(analysis.segment(mode="features").labels, people),
         _mean(nested.labels, people),
+        _mean(analysis.segment(joints=True).labels, people),
         _mean(_clustered(analysis, true_number), people),
         float(np.mean(between)),
         by_threshold,
@@ -99,15 +101,18 @@ def _clustered(analysis: Analysis, n_parts: int) -> Ints:
 
 def _table(rows: list[Row]) -> str:
     lines = [
-        "| mesh | vertices | parts | nested | features | spectral clustering, number given | people |",
-        "|---|---|---|---|---|---|---|",
+        "| mesh | vertices | parts | nested | with joints | features | spectral clustering, number given | people |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
-        figures = (row.nested, row.features, row.clustering, row.people)
+        figures = (row.nested, row.jointed, row.features, row.clustering, row.people)
         lines.append(
             f"| {row.number} | {row.n_vertices} | {row.n_parts} | " + " | ".join(f"{x:.3f}" for x in figures) + " |"
         )
-    means = [np.mean([getattr(row, name) for row in rows]) for name in ("nested", "features", "clustering", "people")]
+    means = [
+        np.mean([getattr(row, name) for row in rows])
+        for name in ("nested", "jointed", "features", "clustering", "people")
+    ]
     lines.append("| **mean** | | | " + " | ".join(f"**{mean:.4f}**" for mean in means) + " |")
     lines.append(f"\nThreshold chosen without the kind it is judged on: {_without_own_kind(rows):.4f}.\n")
     return "\n".join(lines)
