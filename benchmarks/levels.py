@@ -6,7 +6,8 @@ One mesh of every character is divided, each triangle into four, up to the first
 size by more than half, as it is and with every vertex moved by noise, in units of the mean edge. Both are analyzed with
 linear elements, whatever their error. Agreement is the share of the area on which the best one-to-one matching of parts
 gives the same part; finer levels are those beyond the default one that keep features of 1 % of the range. The limits of
-the levels were chosen on every other character. Without a folder the example characters alone are measured.
+the levels were chosen on every other character. Meshes whose loose parts leave less to be analyzed than levels are
+taken for are left out. Without a folder the example characters alone are measured.
 """
 
 import argparse
@@ -28,7 +29,7 @@ from compute import Analysis, TriangleMesh, analyze
 from compute.errors import EngineError
 from compute.fem import elements_by_need
 from compute.fem.eigensolver import linear_eigenpairs
-from compute.fem.multilevel_eigenpairs import multilevel_eigenpairs
+from compute.fem.multilevel_eigenpairs import LEAST_UNKNOWNS, multilevel_eigenpairs
 
 LEAST_VERTICES = 400
 ENOUGH = 0.995
@@ -102,6 +103,8 @@ def _measured(character: str, mesh: TriangleMesh, size: int, noise: float) -> Ro
         )
     except (EngineError, np.linalg.LinAlgError) as error:
         sys.stdout.write(f"No levels: {character}, {len(mesh.vertices)} vertices, noise {noise:g}: {error}\n")
+        return None
+    if len(factored.surface.mesh.used) < LEAST_UNKNOWNS:
         return None
     levels = finer_levels(factored)
     same = [same_parts(leveled, factored, level) for level in (factored.hierarchy.default_level, *levels)]

@@ -14,7 +14,7 @@ from .aggregation import aggregates, carrying, centres
 from .shift_invert import SHIFT, factored_by_columns
 
 # Problems of at most this many unknowns are factored.
-COARSEST_UNKNOWNS = 3000
+COARSEST_UNKNOWNS = 6000
 
 # A level has about an eighth of the unknowns of the finer one; with more than this part nothing would be won.
 LARGEST_SHARE = 0.5
