@@ -35,7 +35,7 @@ class Row:
     n_parts: int
     features: float
     nested: float
-    jointed: float
+    unjointed: float
     clustering: float
     people: float
     nested_by_threshold: dict[float, float]
@@ -70,17 +70,17 @@ def _pairs(counts: Ints) -> float:
 def _measure(path: Path) -> Row:
     people = [np.loadtxt(file, dtype=int) for file in sorted((path.parents[1] / "seg" / path.stem).glob("*.seg"))]
     analysis = analyze(read_mesh(path))
-    nested = analysis.segment(mode="nested")
+    nested = analysis.segment()
     true_number = int(np.median([len(np.unique(labels)) for labels in people]))
     between = [rand_dissimilarity(a, b) for a, b in itertools.combinations(people, 2)]
-    by_threshold = {x: _mean(analysis.segment(threshold=x, mode="nested").labels, people) for x in THRESHOLDS}
+    by_threshold = {x: _mean(analysis.segment(threshold=x).labels, people) for x in THRESHOLDS}
     return Row(
         int(path.stem),
         len(analysis.mesh.vertices),
         nested.n_parts,
         _mean(analysis.segment(mode="features").labels, people),
         _mean(nested.labels, people),
-        _mean(analysis.segment(joints=True).labels, people),
+        _mean(analysis.segment(joints=False).labels, people),
         _mean(_clustered(analysis, true_number), people),
         float(np.mean(between)),
         by_threshold,
@@ -101,17 +101,17 @@ def _clustered(analysis: Analysis, n_parts: int) -> Ints:
 
 def _table(rows: list[Row]) -> str:
     lines = [
-        "| mesh | vertices | parts | nested | with joints | features | spectral clustering, number given | people |",
+        "| mesh | vertices | parts | nested | without joints | features | spectral clustering, number given | people |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
-        figures = (row.nested, row.jointed, row.features, row.clustering, row.people)
+        figures = (row.nested, row.unjointed, row.features, row.clustering, row.people)
         lines.append(
             f"| {row.number} | {row.n_vertices} | {row.n_parts} | " + " | ".join(f"{x:.3f}" for x in figures) + " |"
         )
     means = [
         np.mean([getattr(row, name) for row in rows])
-        for name in ("nested", "jointed", "features", "clustering", "people")
+        for name in ("nested", "unjointed", "features", "clustering", "people")
     ]
     lines.append("| **mean** | | | " + " | ".join(f"**{mean:.4f}**" for mean in means) + " |")
     lines.append(f"\nThreshold chosen without the kind it is judged on: {_without_own_kind(rows):.4f}.\n")

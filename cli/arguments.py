@@ -158,15 +158,16 @@ def _add_division(command: argparse.ArgumentParser) -> None:
     mode.add_argument(
         "--mode",
         choices=compute.READINGS,
-        help="parts inside parts (default), only what stands out at this level, or the first with joints",
+        help="parts inside parts with joints (default) or without, or only what stands out at this level",
     )
     mode.add_argument(
         "--joints",
         dest="mode",
         action="store_const",
         const=compute.JOINTED,
-        help="parts inside parts, and limbs cut where they narrow on both sides, such as at wrists and ankles",
+        help="parts inside parts, and limbs cut where they narrow on both sides, such as at wrists (default)",
     )
+    mode.add_argument("--no-joints", dest="mode", action="store_const", const=compute.NESTED, help="without joints")
 
 
 def _add_execution(command: argparse.ArgumentParser) -> None:

@@ -8,7 +8,7 @@ MODES = (NESTED, FEATURES)
 # The nested parts, and limbs are cut at their joints.
 JOINTED = "jointed"
 # All ways in which levels are read.
-READINGS = (*MODES, JOINTED)
+READINGS = (JOINTED, *MODES)
 # What is done with a mesh of several shells: those that prolong the largest are bridged to it, only the largest is
 # analyzed, or each that is no detail by itself.
 SHELLS = ("bridged", "largest", "separate")

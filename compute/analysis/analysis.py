@@ -321,7 +321,7 @@ class Analysis:
         return edge_profile(self.surface, self.field, self._arc_of_vertex, edges)
 
     @told_if_full
-    def borders(self, level: int | None = None, mode: str = NESTED, joints: bool = False) -> tuple[Polyline, ...]:
+    def borders(self, level: int | None = None, mode: str = NESTED, joints: bool | None = None) -> tuple[Polyline, ...]:
         """Return the lines on the triangles of the input along which the parts of a level end.
 
         Parameters
@@ -329,7 +329,7 @@ class Analysis:
         level : int, optional
             The default level if None.
         mode : "nested" or "features"
-        joints : bool
+        joints : bool, optional
             As in :meth:`segment`.
 
         Returns
@@ -361,7 +361,7 @@ class Analysis:
         threshold: float | None = None,
         n_parts: int | None = None,
         mode: str = NESTED,
-        joints: bool = False,
+        joints: bool | None = None,
         essential: bool = False,
         within: int | None = None,
     ) -> Segmentation:
@@ -377,8 +377,9 @@ class Analysis:
             How many labels, the body included.
         mode : "nested" or "features"
             The features and what lies between them when all levels up to this one are overlaid, or the features alone.
-        joints : bool
-            Whether limbs are cut where they narrow on both sides, such as at wrists and ankles; nested parts only.
+        joints : bool, optional
+            Whether limbs are cut where they narrow on both sides, such as at wrists and ankles; if None they are
+            in nested parts, the only ones that have joints.
         essential : bool
             Whether parts end at essential saddles, too: where a handle begins, such as a leg that a tail touches.
         within : int, optional
@@ -407,7 +408,7 @@ class Analysis:
         (1280,)
         >>> segmentation.n_parts
         5
-        >>> analysis.segment(joints=True).n_parts >= analysis.segment().n_parts
+        >>> analysis.segment().n_parts >= analysis.segment(joints=False).n_parts
         True
         """
         if essential:
@@ -424,14 +425,16 @@ class Analysis:
             warnings=labels.warnings,
             _trace=partial(self.borders, labels.level, mode, joints),
         )
-        return whole if within is None else _divided_further(self, whole, within, mode)
+        return whole if within is None else _divided_further(self, whole, within, mode, joints)
 
 
-def _divided_further(analysis: Analysis, whole: Segmentation, part: int, mode: str) -> Segmentation:
+def _divided_further(
+    analysis: Analysis, whole: Segmentation, part: int, mode: str, joints: bool | None
+) -> Segmentation:
     """Analyze one part on its own and put its parts in its place."""
     alone = analyze_part(analysis, whole, part)
     inside = np.flatnonzero(whole.labels == part)
-    return inserted(whole, part, inside, segment_part(alone, mode), alone.net, analysis.net)
+    return inserted(whole, part, inside, segment_part(alone, mode, joints), alone.net, analysis.net)
 
 
 def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis:
@@ -451,7 +454,8 @@ def analyze_part(analysis: Analysis, whole: Segmentation, part: int) -> Analysis
     return analysis._analyze(piece, field=analysis.field_choice, boundary="dirichlet" if holds_border else "neumann")
 
 
-def segment_part(part: Analysis, mode: str) -> Segmentation:
+def segment_part(part: Analysis, mode: str, joints: bool | None = None) -> Segmentation:
     """Divide a part that was analyzed on its own at the level that is usual for parts."""
     holds_border = part.field.name == DIFFUSION and part.eigenbasis.boundary == "dirichlet"
-    return part.segment(threshold=WITHIN_THRESHOLD / part.field.value_range if holds_border else None, mode=mode)
+    threshold = WITHIN_THRESHOLD / part.field.value_range if holds_border else None
+    return part.segment(threshold=threshold, mode=mode, joints=joints)

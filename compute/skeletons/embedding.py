@@ -178,9 +178,9 @@ def skeleton(
 
 def _labels_of_level(analysis: Analysis, level: int | None, mode: str) -> NDArray[np.int32]:
     """Return the parts of a level; of a shape whose features are all at its handles, the parts that end there."""
-    labels = analysis.segment(level=level, mode=mode).labels
+    labels = analysis.segment(level=level, mode=mode, joints=False).labels
     if labels.min() == labels.max():
-        return analysis.segment(level=level, mode=mode, essential=True).labels
+        return analysis.segment(level=level, mode=mode, joints=False, essential=True).labels
     return labels
 
 

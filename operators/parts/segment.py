@@ -84,8 +84,8 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
         """Return how levels are to be read: as they are shown, where nothing else is given."""
         is_given = self.properties.is_property_set
         mode = word(compute.MODES, self.mode) if is_given("mode") else compute.mode_of(shown)
-        keeps_joints = shown == compute.JOINTED and mode == compute.NESTED
-        return compute.reading_of(mode, self.joints if is_given("joints") else keeps_joints)
+        kept = False if shown == compute.NESTED else None
+        return compute.reading_of(mode, self.joints if is_given("joints") else kept)
 
     def _given(self) -> list[str]:
         """Return what the division goes by: what was chosen, or all that is given."""

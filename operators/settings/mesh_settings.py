@@ -22,7 +22,7 @@ def _mode(settings: "EigenpartsMeshSettings") -> int:
 
 @shown_in_panel
 def _set_mode(settings: "EigenpartsMeshSettings", mode: int) -> tuple[str, ...]:
-    return part_writer.show_mode(mesh_with(settings), compute.MODES[mode]).warnings
+    return part_writer.show_mode(mesh_with(settings), compute.reading_of(compute.MODES[mode], None)).warnings
 
 
 def _joints(settings: "EigenpartsMeshSettings") -> bool:

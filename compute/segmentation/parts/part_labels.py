@@ -7,7 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ...choices import JOINTED, NESTED, READINGS
+from ...choices import FEATURES, JOINTED, NESTED, READINGS
 from ...errors import LevelError
 from ...surface.mesh import Floats, Ints, sum_by
 from ..borders.level_set_borders import Polyline
@@ -168,19 +168,21 @@ def label_branches(
     if level is None:
         level = hierarchy.default_level if threshold is None else hierarchy.level_of_threshold(threshold)
     labels = at_level(hierarchy.checked_level(level))
-    if mode == NESTED and labels.level >= max(1, hierarchy.default_level) and len(labels.parts) == 1:
+    if mode != FEATURES and labels.level >= max(1, hierarchy.default_level) and len(labels.parts) == 1:
         return replace(labels, warnings=(NOTHING_STANDS_OUT,))
     return labels
 
 
-def reading_of(mode: str, joints: bool) -> str:
-    """Return how levels are read: in a mode, with or without joints.
+def reading_of(mode: str, joints: bool | None) -> str:
+    """Return how levels are read: in a mode, with or without joints; if None, with joints in nested parts.
 
     Raises
     ------
     LevelError
         If joints are asked for among features alone.
     """
+    if joints is None:
+        return JOINTED if mode == NESTED else mode
     if not joints:
         return mode
     if mode != NESTED:
