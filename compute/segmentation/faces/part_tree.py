@@ -158,8 +158,10 @@ class PartTree:
         if mode == NESTED:
             return cuts
         return [
-            is_cut | joint_cuts(tree, is_cut, level=level, default_level=default_level)
-            for tree, is_cut in zip(self.trees, cuts, strict=True)
+            is_cut | joint_cuts(tree, measures, shares, is_cut, level=level, default_level=default_level)
+            for tree, measures, shares, is_cut in zip(
+                self.trees, self.measures, self._shares_of_shells, cuts, strict=True
+            )
         ]
 
     @cached_property

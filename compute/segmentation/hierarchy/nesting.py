@@ -46,12 +46,20 @@ def nested_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: in
     return is_cut | tree.is_shell | (is_finer & was_feature & (measures.roundness < HEMISPHERE))
 
 
-def joint_cuts(tree: ArcTree, is_cut: Bools, *, level: int, default_level: int) -> Bools:
-    """Mask (A,) of the arcs that end at a joint of a level: at the necks of the limbs that are cut off.
+def joint_cuts(
+    tree: ArcTree, measures: ArcMeasures, area: Floats, is_cut: Bools, *, level: int, default_level: int
+) -> Bools:
+    """Mask (A,) of the arcs that end at a joint of a level.
+
+    They are at the necks of the limbs that are cut off, and of the two ends of a thing that is not cut between them.
 
     Parameters
     ----------
     tree : ArcTree
+    measures : ArcMeasures
+        Of its arcs.
+    area : (A,) float64
+        Share of each arc in the area of its shell.
     is_cut : (A,) bool
         The arcs that end a part without joints.
     level : int
@@ -59,6 +67,8 @@ def joint_cuts(tree: ArcTree, is_cut: Bools, *, level: int, default_level: int) 
         Of the hierarchy, whose features are the limbs.
     """
     is_limb, in_limb = tree.is_feature(default_level), np.zeros(len(is_cut), dtype=bool)
+    is_cut = is_cut.copy()
+    is_cut[_two_ends(tree, measures, area, tree.is_cut(default_level) & ~tree.is_shell)] = True
     for arc in range(len(is_cut) - 1, -1, -1):
         parent = tree.parent[arc]
         in_limb[arc] = is_cut[arc] if is_limb[arc] else parent != NO_ARC and in_limb[parent]

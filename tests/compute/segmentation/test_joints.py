@@ -46,8 +46,10 @@ def heights_of(mesh):
 def test_a_limb_is_cut_at_its_narrowest_place():
     mesh = bone(0.4)
     analysis = analyze(mesh)
-    without, parts = analysis.segment(), analysis.segment(joints=True)
-    assert parts.n_parts == without.n_parts + 2
+    without, parts = analysis.segment(joints=False), analysis.segment()
+    assert (without.n_parts, parts.n_parts) == (1, 3)
+    assert without.warnings
+    assert not parts.warnings
     for end in (-1, 1):
         tip = int(parts.labels[np.argmax(end * heights_of(mesh))])
         inside = heights_of(mesh)[parts.labels == tip]
@@ -58,7 +60,7 @@ def test_a_rod_without_dents_has_no_joints():
     analysis = analyze(bone())
     for level in range(analysis.hierarchy.n_levels):
         np.testing.assert_array_equal(
-            analysis.segment(level=level, joints=True).labels, analysis.segment(level=level).labels
+            analysis.segment(level=level).labels, analysis.segment(level=level, joints=False).labels
         )
 
 
@@ -94,7 +96,7 @@ def test_all_is_as_it_was_for_those_who_ask_for_none(analysis, monkeypatch):
     assert analysis.hierarchy.trees[0].is_neck.any()
     for mode in ("nested", "features"):
         for level in range(hierarchy.n_levels):
-            ours, theirs = (one.segment(level=level, mode=mode) for one in (analysis, plain))
+            ours, theirs = (one.segment(level=level, mode=mode, joints=False) for one in (analysis, plain))
             np.testing.assert_array_equal(ours.labels, theirs.labels)
             np.testing.assert_array_equal(ours.parts.id, theirs.parts.id)
 
@@ -147,7 +149,8 @@ def test_a_joint_waits_for_its_limb(analysis):
 
 def test_the_number_of_parts_can_be_asked_for():
     analysis = analyze(bone(0.4))
-    assert analysis.segment(n_parts=5, joints=True).n_parts == 5
+    assert analysis.segment(n_parts=3).n_parts == 3
+    assert analysis.segment(n_parts=3, joints=False).n_parts < 3
 
 
 def test_joints_among_features_are_refused(analysis):

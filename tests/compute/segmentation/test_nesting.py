@@ -107,6 +107,6 @@ def test_refuses_to_divide_a_part_that_is_not_there(person, part):
 
 def test_no_belt_is_left_between_chest_and_hips(person):
     """Chest and hips both end in a neck at the waist; the larger one is body."""
-    nested = person.segment(mode="nested")
+    nested = person.segment(joints=False)
     assert nested.parts.area[0] > 0.05 * nested.parts.area.sum()
     assert nested.n_parts == 7

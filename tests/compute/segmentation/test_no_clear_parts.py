@@ -61,6 +61,14 @@ def test_its_ends_are_features_nevertheless():
     assert rod.segment(mode="features").warnings == ()
 
 
+def test_what_narrows_in_one_half_is_cut_there_and_not_in_the_middle():
+    skittle = turned(np.interp(ALONG, [0, 0.05, 0.35, 0.7, 0.85, 1], [0.2, 0.25, 0.4, 0.15, 0.22, 0.08]), 1.6 * ALONG)
+    labels = analyze(skittle).segment().labels
+    height = skittle.vertices[skittle.triangles, 2].mean(axis=1)
+    assert len(np.unique(labels)) == 2
+    assert height[labels > 0].min() == pytest.approx(0.7 * 1.6, abs=0.06)
+
+
 def test_a_waist_divides_what_a_rod_does_not():
     waisted = turned(np.sqrt(0.04 + 0.6 * (ALONG - 0.5) ** 2), ALONG)
     segmentation = analyze(waisted).segment()
