@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...surface.mesh import Bools, Floats, Ints, sum_by
-from ...surface.ties import first_largest
+from ...surface.ties import first_largest, first_least
 from .arc_measures import LEAST_HEIGHT, ArcMeasures
 from .arc_tree import ALWAYS, NO_ARC, ArcTree
 
@@ -18,6 +18,8 @@ BLUNT = 4.4
 # Two features that leave less than this share of the area between them are the two ends of one thing, as of a rod or an
 # egg, unless each side widens from where they meet by more than the second number.
 BELT, WAIST = 0.2, 0.9
+# A joint is left out where it would cut off less than this share of the area, or leave less up to the next cut.
+LEAST_PIECE = 0.003
 # Beyond the default level, who asks for more features gets all whose roundness is less than that of a hemisphere.
 HEMISPHERE = 2 * np.pi
 
@@ -67,12 +69,27 @@ def joint_cuts(
         Of the hierarchy, whose features are the limbs.
     """
     is_limb, in_limb = tree.is_feature(default_level), np.zeros(len(is_cut), dtype=bool)
-    is_cut = is_cut.copy()
-    is_cut[_two_ends(tree, measures, area, tree.is_cut(default_level) & ~tree.is_shell)] = True
+    is_end = is_cut.copy()
+    is_end[_two_ends(tree, measures, area, tree.is_cut(default_level) & ~tree.is_shell)] = True
     for arc in range(len(is_cut) - 1, -1, -1):
         parent = tree.parent[arc]
-        in_limb[arc] = is_cut[arc] if is_limb[arc] else parent != NO_ARC and in_limb[parent]
-    return in_limb & (tree.neck_closing < level)
+        in_limb[arc] = is_end[arc] if is_limb[arc] else parent != NO_ARC and in_limb[parent]
+    return _without_slivers(tree, area, is_cut, in_limb & (tree.neck_closing < level))
+
+
+def _without_slivers(tree: ArcTree, area: Floats, is_cut: Bools, is_joint: Bools) -> Bools:
+    """Leave out joints that lie so near to another cut that next to nothing is between them."""
+    kept = is_joint.copy()
+    while True:
+        region = tree.spread(np.where(is_cut | kept | tree.is_shell, np.arange(1, len(area) + 1), 0))
+        size = sum_by(region, area, len(area) + 1)
+        joints = np.flatnonzero(kept)
+        between = np.minimum(size[joints + 1], size[region[tree.parent[joints]]])
+        if not (between < LEAST_PIECE).any():
+            return kept
+        left_out = joints[first_least(between)]
+        # Twins are cut at both joints or at none.
+        kept[[left_out, tree.twin[left_out]]] = False
 
 
 def numbered(tree: ArcTree, is_cut: Bools) -> Ints:
