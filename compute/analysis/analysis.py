@@ -374,7 +374,7 @@ class Analysis:
         threshold : float, optional
             Least persistence of a feature, as a fraction of the field's range.
         n_parts : int, optional
-            How many labels, the body included.
+            How many labels, the body included; reached without joints where it is not with them, if ``joints`` is None.
         mode : "nested" or "features"
             The features and what lies between them when all levels up to this one are overlaid, or the features alone.
         joints : bool, optional
@@ -416,8 +416,12 @@ class Analysis:
                 level=level, threshold=threshold, n_parts=n_parts, mode=mode, joints=joints, within=within
             )
         part_tree = self.part_tree()
-        reading = reading_of(mode, joints)
-        labels = label_branches(part_tree, level=level, threshold=threshold, n_parts=n_parts, mode=reading)
+        read = partial(label_branches, part_tree, level=level, threshold=threshold, n_parts=n_parts)
+        labels = read(mode=reading_of(mode, joints))
+        if joints is None and n_parts is not None and len(labels.parts) != n_parts:
+            without = read(mode=mode)
+            if len(without.parts) == n_parts:
+                labels, joints = without, False
         whole = Segmentation(
             labels=labels.of_faces(part_tree),
             parts=labels.parts,

@@ -221,7 +221,7 @@ class MeshState:
         """Return what piece of the surface each of the mesh's own parts is: as it is shown, or else by default."""
         by_default = part_tree.pieces_of_parts(part_tree.hierarchy.default_level)
         if self.registration is not None:
-            return by_default
+            return by_default | part_tree.pieces_of_parts(min(self.level, self.highest_level), self.mode)
         branch_levels = compute.Corrections(self.corrections).branch_levels
         return by_default | part_tree.pieces_of_parts(self.shown_level, self.mode, branch_levels)
 

@@ -182,7 +182,10 @@ def _unpacked_tree(mesh: bpy.types.Mesh, group: Any) -> compute.PartTree:
     )
     return compute.PartTree(
         hierarchy=compute.Hierarchy(**unpacked(group[HIERARCHY], compute.Hierarchy), trees=trees),
-        measures=tuple(compute.ArcMeasures(**unpacked(table, compute.ArcMeasures)) for table in tables),
+        measures=tuple(
+            compute.ArcMeasures(**unpacked({"widest": table["longest"], **table}, compute.ArcMeasures))
+            for table in tables
+        ),
         closing_heights=tuple(_unpacked_closing_heights(group, i, tree) for i, tree in enumerate(trees)),
         branches=unpacked_branches(group, [read_own_integers(mesh, attribute) for attribute in BRANCHES[:n_trees]]),
     )

@@ -84,6 +84,9 @@ class EIGENPARTS_OT_segment(TypedProperties, bpy.types.Operator):
         """Return how levels are to be read: as they are shown, where nothing else is given."""
         is_given = self.properties.is_property_set
         mode = word(compute.MODES, self.mode) if is_given("mode") else compute.mode_of(shown)
+        if mode != compute.NESTED and is_given("mode"):
+            # The tick is what the panel of the last operation still holds.
+            return mode
         kept = False if shown == compute.NESTED else None
         return compute.reading_of(mode, self.joints if is_given("joints") else kept)
 

@@ -64,7 +64,7 @@ def test_a_damaged_value_is_refused_in_a_sentence(analyzed, extension, value, pl
 
 # What is asked for, where it stands, values that make no sense, and what is read in their place.
 REPLACED = [
-    ("mode", "mode", (7, "other", "", [1, 2]), "nested"),
+    ("mode", "mode", (7, "other", "", [1, 2]), "jointed"),
     ("shells", "shells", (7, "other", {}), "bridged"),
     ("outputs", "outputs", (7, [1.5], {"a": 1}), None),
     ("softness", "softness", ("wide", -3.0, [1, 2]), 0.0),
@@ -113,7 +113,7 @@ def test_a_value_is_decoded_once(analyzed, monkeypatch, extension):
     state = state_of(analyzed)
     assert state.analysis is state.analysis
     monkeypatch.setattr(extension.operators.mesh_state.state, "unpacked_summary", None)
-    assert state_of(analyzed).mode == "nested"
+    assert state_of(analyzed).mode == "jointed"
 
 
 @pytest.fixture

@@ -129,7 +129,7 @@ def test_the_panel_of_segment_begins_with_what_the_mesh_shows(analyzed):
         assert shown == {
             "by": "DEFAULT",
             "mode": "NESTED",
-            "joints": False,
+            "joints": True,
             "level": analyzed.data.eigenparts.level,
             "n_parts": 6,
         }

@@ -53,28 +53,30 @@ def analyzed_humanoid():
 def test_joints_stay_while_the_level_moves(humanoid_mesh):
     settings = humanoid_mesh.eigenparts
     analysis = analyze(triangles_of(humanoid_mesh))
-    assert not settings.joints
-    settings.joints = True
+    assert settings.joints
     for level in range(analysis.hierarchy.n_levels):
         settings.level = level
         assert settings.joints
         assert settings.mode == "NESTED"
         assert settings.n_parts == analysis.segment(level=level, joints=True).n_parts
     bpy.ops.eigenparts.segment()
-    assert settings.n_parts == analysis.segment(joints=True).n_parts > analysis.segment().n_parts
+    assert settings.n_parts == analysis.segment().n_parts > analysis.segment(joints=False).n_parts
     settings.joints = False
-    assert settings.n_parts == analysis.segment().n_parts
+    assert settings.n_parts == analysis.segment(joints=False).n_parts
 
 
 def test_joints_can_be_asked_for_by_scripts(humanoid_mesh):
-    n_parts = humanoid_mesh.eigenparts.n_parts
-    bpy.ops.eigenparts.segment(joints=True)
     with_joints = humanoid_mesh.eigenparts.n_parts
+    bpy.ops.eigenparts.segment(joints=False)
+    n_parts = humanoid_mesh.eigenparts.n_parts
     assert with_joints > n_parts
     bpy.ops.eigenparts.segment(mode="NESTED")
-    assert humanoid_mesh.eigenparts.n_parts == with_joints
-    bpy.ops.eigenparts.segment(joints=False)
     assert humanoid_mesh.eigenparts.n_parts == n_parts
+    bpy.ops.eigenparts.segment(joints=True)
+    assert humanoid_mesh.eigenparts.n_parts == with_joints
+    bpy.ops.eigenparts.segment(mode="FEATURES")
+    bpy.ops.eigenparts.segment(mode="NESTED")
+    assert humanoid_mesh.eigenparts.n_parts == with_joints
 
 
 def test_features_have_no_joints(humanoid_mesh):

@@ -122,13 +122,13 @@ def test_joints_and_twins_are_in_the_report(run, tmp_path):
     add_object(TriangleMesh(character.vertices, character.triangles))
     EXPORTERS[".ply"](str(tmp_path / "humanoid.ply"))
     n_parts = {}
-    for joints in ([], ["--joints"]):
+    for joints in ([], ["--joints"], ["--no-joints"]):
         _, report, _ = run("segment", tmp_path / "humanoid.ply", *joints, "--json")
         parts = report["files"][0]["objects"][0]["parts"]
         n_parts[report["files"][0]["settings"]["mode"]] = len(parts)
         mirror = {part["id"]: part["mirror"] for part in parts}
         assert sum(twin is not None and mirror[twin] == part for part, twin in mirror.items()) >= 4
-    assert n_parts["jointed"] > n_parts[None]
+    assert n_parts[None] == n_parts["jointed"] > n_parts["nested"]
 
 
 def test_one_bad_file_does_not_stop_the_rest(run, star_off, tmp_path):

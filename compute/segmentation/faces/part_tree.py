@@ -150,15 +150,16 @@ class PartTree:
         """For each tree, the mask of the arcs that end a part."""
         if mode == FEATURES:
             return [tree.is_feature(level) for tree in self.trees]
-        default_level = self.hierarchy.default_level
+        default_level, has_ends = self.hierarchy.default_level, len(self.trees) == 1
         cuts = [
-            nested_cuts(tree, measures, shares, level=level, default_level=default_level)
+            nested_cuts(tree, measures, shares, level=level, default_level=default_level, has_ends=has_ends)
             for tree, measures, shares in zip(self.trees, self.measures, self._shares_of_shells, strict=True)
         ]
         if mode == NESTED:
             return cuts
         return [
-            is_cut | joint_cuts(tree, measures, shares, is_cut, level=level, default_level=default_level)
+            is_cut
+            | joint_cuts(tree, measures, shares, is_cut, level=level, default_level=default_level, has_ends=has_ends)
             for tree, measures, shares, is_cut in zip(
                 self.trees, self.measures, self._shares_of_shells, cuts, strict=True
             )

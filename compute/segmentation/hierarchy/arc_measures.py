@@ -10,6 +10,9 @@ from .arc_tree import ArcTree
 
 # Level sets that are measured on each arc, evenly spaced over its height.
 N_SAMPLES = 8
+# Places in the area inside an arc that closes last at which its level sets are measured, too: the ball of a barbell
+# takes next to nothing of the height.
+PLACES = np.linspace(0.0, 1.0, 13)
 # An arc lower than this fraction of the field's range is a thin shell; its level sets are not measured.
 LEAST_HEIGHT = 0.02
 # The tip of a part, this fraction of its area, is left out of its roundness: every tip is round.
@@ -27,6 +30,8 @@ class ArcMeasures:
         saddle.
     closing_length, longest : (A,) float64
         Length of the level set where the arc closes and at its longest inside; 0 where it was not worth measuring.
+    widest : (A,) float64
+        As ``longest``; of two arcs that close last, the longest by their area, too.
     roundness : (A,) float64
         The least length²/area of all level sets from the leaf to where the arc closes, area being what they cut off:
         4 pi for a flat disk, 2 pi for a hemisphere, less for a longer protrusion; where an arc was not worth measuring,
@@ -36,6 +41,7 @@ class ArcMeasures:
     height: Floats
     closing_length: Floats
     longest: Floats
+    widest: Floats
     roundness: Floats
 
 
@@ -56,7 +62,18 @@ def measure_arcs(tree: ArcTree, arc: Ints, field: ScalarField) -> ArcMeasures:
     levels = top[tall, None] - (top - bottom)[tall, None] * (np.arange(N_SAMPLES) + 0.05) / N_SAMPLES
     length, area = np.zeros((2, len(height), N_SAMPLES))
     length[tall], area[tall] = _level_sets(rising, arc, tree, field.net, tall, levels)
-    return ArcMeasures(height, length[:, 0], longest=length.max(axis=1), roundness=_roundness(tree.part, length, area))
+    longest = length.max(axis=1)
+    widest = longest.copy()
+    for root in np.flatnonzero(tree.is_root).tolist():
+        ends = tall[tree.parent[tall] == root]
+        if len(ends) == 2:
+            inside = [rising[tree.subtree(end)[arc]] for end in ends.tolist()]
+            by_area = np.stack([np.quantile(heights, PLACES) for heights in inside])
+            # Between two of them, as a level set through a whole ring of vertices crosses no triangle.
+            by_area = (by_area[:, 1:] + by_area[:, :-1]) / 2
+            lengths, _ = _level_sets(rising, arc, tree, field.net, ends, by_area)
+            widest[ends] = np.maximum(longest[ends], lengths.max(axis=1))
+    return ArcMeasures(height, length[:, 0], longest, widest, roundness=_roundness(tree.part, length, area))
 
 
 def _level_sets(

@@ -16,15 +16,18 @@ LEAST_AREA = 0.05
 # they cut off, its tip left out. A hemisphere has 2 pi, a hemisphere on a cylinder half as high as its radius 4.2.
 BLUNT = 4.4
 # Two features that leave less than this share of the area between them are the two ends of one thing, as of a rod or an
-# egg, unless each side widens from where they meet by more than the second number.
-BELT, WAIST = 0.2, 0.9
+# egg, unless where they meet is shorter than the second share of the longest level sets of both, or than the third of
+# one of them while neither is blunt (a ball on a stick).
+BELT, WAIST, SHOULDER = 0.2, 0.9, 0.5
 # A joint is left out where it would cut off less than this share of the area, or leave less up to the next cut.
 LEAST_PIECE = 0.003
 # Beyond the default level, who asks for more features gets all whose roundness is less than that of a hemisphere.
 HEMISPHERE = 2 * np.pi
 
 
-def nested_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: int, default_level: int) -> Bools:
+def nested_cuts(
+    tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: int, default_level: int, has_ends: bool
+) -> Bools:
     """Mask (A,) of the arcs that end a part when all levels up to ``level`` are overlaid.
 
     Up to the default level every feature is cut off unless it is blunt, and so is what lies between two of its saddles
@@ -41,15 +44,28 @@ def nested_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, *, level: in
     level : int
     default_level : int
         Of the hierarchy.
+    has_ends : bool
+        Whether two features may be only the two ends of one thing. Those of a field with minima as features are not:
+        there the middle counts, too.
     """
-    is_cut = _worthy_cuts(tree, measures, area, tree.is_cut(min(level, default_level)) & ~tree.is_shell)
+    candidates = tree.is_cut(min(level, default_level)) & ~tree.is_shell
+    is_cut = _worthy_cuts(tree, measures, area, candidates)
+    if has_ends:
+        is_cut[_two_ends(tree, measures, area, candidates)] = False
     is_finer = tree.is_cut(level) & (tree.joint_closing >= default_level)
     was_feature = tree.least_closing_inside > tree.joint_closing
     return is_cut | tree.is_shell | (is_finer & was_feature & (measures.roundness < HEMISPHERE))
 
 
 def joint_cuts(
-    tree: ArcTree, measures: ArcMeasures, area: Floats, is_cut: Bools, *, level: int, default_level: int
+    tree: ArcTree,
+    measures: ArcMeasures,
+    area: Floats,
+    is_cut: Bools,
+    *,
+    level: int,
+    default_level: int,
+    has_ends: bool,
 ) -> Bools:
     """Mask (A,) of the arcs that end at a joint of a level.
 
@@ -67,10 +83,13 @@ def joint_cuts(
     level : int
     default_level : int
         Of the hierarchy, whose features are the limbs.
+    has_ends : bool
+        As for ``nested_cuts``.
     """
     is_limb, in_limb = tree.is_feature(default_level), np.zeros(len(is_cut), dtype=bool)
     is_end = is_cut.copy()
-    is_end[_two_ends(tree, measures, area, tree.is_cut(default_level) & ~tree.is_shell)] = True
+    if has_ends:
+        is_end[_two_ends(tree, measures, area, tree.is_cut(default_level) & ~tree.is_shell)] = True
     for arc in range(len(is_cut) - 1, -1, -1):
         parent = tree.parent[arc]
         in_limb[arc] = is_end[arc] if is_limb[arc] else parent != NO_ARC and in_limb[parent]
@@ -147,7 +166,6 @@ def _worthy_cuts(tree: ArcTree, measures: ArcMeasures, area: Floats, candidates:
             else:
                 is_cut[arc] = measures.roundness[arc] < BLUNT
         has_cut_inside[parent] = (has_cut_inside | is_cut)[meeting].any()
-    is_cut[_two_ends(tree, measures, area, candidates)] = False
     return _with_a_body(tree, is_cut, is_cut & has_cut_inside, area)
 
 
@@ -159,9 +177,11 @@ def _two_ends(tree: ArcTree, measures: ArcMeasures, area: Floats, candidates: Bo
         ends = np.flatnonzero(candidates & (shell == number)).tolist()
         if len(ends) != 2 or tree.parent[ends[0]] != tree.parent[ends[1]]:
             continue
-        inside = tree.subtree(ends[0]) | tree.subtree(ends[1])
-        narrowest = measures.longest[ends] * WAIST
-        if area[(shell == number) & ~inside].sum() < BELT and (measures.closing_length[ends] > narrowest).any():
+        outside = area[(shell == number) & ~(tree.subtree(ends[0]) | tree.subtree(ends[1]))].sum()
+        shares = measures.closing_length[ends] / np.maximum(measures.widest[ends], np.finfo(float).tiny)
+        has_waist = (shares < WAIST).all()
+        has_shoulder = (shares < SHOULDER).any() and (measures.roundness[ends] < BLUNT).all()
+        if outside < BELT and not has_waist and not has_shoulder:
             found += ends
     return found
 

@@ -69,6 +69,33 @@ def test_what_narrows_in_one_half_is_cut_there_and_not_in_the_middle():
     assert height[labels > 0].min() == pytest.approx(0.7 * 1.6, abs=0.06)
 
 
+def ball(radius, middle, start, stop):
+    """Distances from the axis and heights on a ball, by angles from below."""
+    angle = np.linspace(start, stop, 30)
+    return np.stack([radius * np.sin(angle), middle - radius * np.cos(angle)], axis=1)
+
+
+@pytest.mark.parametrize("thickness", [0.1, 0.3, 0.6])
+def test_balls_at_the_ends_of_a_rod_are_parts(thickness):
+    """The balls of a barbell take next to nothing of the field's height."""
+    neck = np.pi - np.arcsin(thickness)
+    low = ball(1, 0, 0.05, neck)
+    rod = np.stack([np.full(40, thickness), np.linspace(low[-1, 1] + 0.05, low[-1, 1] + 2.95, 40)], axis=1)
+    profile = np.vstack([low, rod, ball(1, 2 * low[-1, 1] + 3, np.pi - neck, np.pi - 0.05)])
+    segmentation = analyze(turned(*profile.T)).segment()
+    sizes = segmentation.parts.area / segmentation.parts.area.sum()
+    assert (sizes > 0.4).sum() == 2
+
+
+def test_a_ball_on_a_stick_is_not_the_stick():
+    head = ball(1, 0, 0.05, np.pi - np.arcsin(0.09))
+    stick = np.stack([np.full(60, 0.09), np.linspace(head[-1, 1] + 0.05, 6, 60)], axis=1)
+    mesh = turned(*np.vstack([head, stick]).T)
+    labels, height = analyze(mesh).segment().labels, mesh.vertices[mesh.triangles, 2].mean(axis=1)
+    (of_head,), (of_stick,) = np.unique(labels[height < 0.8]), np.unique(labels[height > 1.5])
+    assert of_head != of_stick
+
+
 def test_a_waist_divides_what_a_rod_does_not():
     waisted = turned(np.sqrt(0.04 + 0.6 * (ALONG - 0.5) ** 2), ALONG)
     segmentation = analyze(waisted).segment()
