@@ -24,10 +24,12 @@ def correct_both(state: MeshState, part: int, mirror: bool, correct: Callable[[M
         Takes the state of the mesh and the part.
     """
     twin = twin_of(state, part) if mirror else None
+    if twin is None:
+        correct(state, part)
+        return
     with all_or_nothing(state.mesh):
         correct(state, part)
-        if twin is not None:
-            correct(read(state.mesh), twin)
+        correct(read(state.mesh), twin)
 
 
 def twin_of(state: MeshState, part: int) -> int | None:
