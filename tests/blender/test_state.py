@@ -174,7 +174,7 @@ def test_the_columns_of_a_state_are_those_that_saved_files_have(analyzed):
     assert state["schema"] == 2
     tree = {"is_of_maxima", "n_roots", "n_features", "parent", "part", "extremum", "saddle", "closing"}
     tree |= {"joint_part", "joint_closing", "twin", "neck", "neck_closing", "n_necks"}
-    assert set(state["tree_0"].keys()) == tree | {"height", "closing_length", "longest", "roundness"}
+    assert set(state["tree_0"].keys()) == tree | {"height", "closing_length", "longest", "widest", "roundness"}
     assert set(state["branches_0"].keys()) == {"arc", "shown", "area", "n_faces", "borders", "border_length"}
     assert set(state["hierarchy"].keys()) == {"pairs", "persistence", "is_maximum", "value_range", "n_levels"}
     closing, parent = (np.array(state["tree_0"][column]["values"]) for column in ("closing", "parent"))
