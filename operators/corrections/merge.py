@@ -35,11 +35,13 @@ class EIGENPARTS_OT_merge_parts(CorrectsParts, TypedProperties, bpy.types.Operat
             self.into = whole_of(state.mesh, self.part)
 
     def correct(self, state: MeshState) -> None:
-        other = twin_of(state, self.into)
-        into = {self.part: self.into, twin_of(state, self.part): self.into if other is None else other}
+        # The body keeps its number, so it is the other one that goes.
+        part, into = (self.into, self.part) if self.part == 0 else (self.part, self.into)
+        other = twin_of(state, into)
+        targets = {part: into, twin_of(state, part): into if other is None else other}
         # Twins that become one are one pair only.
-        mirror = self.mirror and other != self.part
-        correct_both(state, self.part, mirror, lambda now, part: merge_parts(now, part, into[part]))
+        mirror = self.mirror and other != part
+        correct_both(state, part, mirror, lambda now, one: merge_parts(now, one, targets[one]))
 
 
 def merge_parts(state: MeshState, part: int, into: int) -> None:

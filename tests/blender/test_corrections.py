@@ -376,6 +376,13 @@ def test_the_tick_of_the_panel_counts_for_borders_and_operators(person):
     assert len(corrections_of(person)) == 5
 
 
+def test_twins_are_merged_with_the_body_whichever_is_named_first(person):
+    first, second = arms(person)
+    before = labels_of(person)
+    bpy.ops.eigenparts.merge_parts(part=0, into=first, mirror=True)
+    np.testing.assert_array_equal(labels_of(person), np.where(np.isin(before, [first, second]), 0, before))
+
+
 def test_a_part_without_a_twin_is_corrected_alone(person):
     part = next(part for part in rows(person) if part and part not in twins_of(person))
     bpy.ops.eigenparts.split_part(part=part, mirror=True)
