@@ -24,7 +24,8 @@ def turn_an_arm(window):
     window.wait_for("bpy.context.mode == 'POSE'")
     window.run(
         "bones = bpy.context.object.data.bones\n"
-        "arm = max((b for b in bones if '_1.L' in b.name), key=lambda bone: bone.head_local.x)\n"
+        "of_arm = [b for b in bones if b.name.endswith('.L') and 'root' not in b.name and b.head_local.z > 1]\n"
+        "arm = min(of_arm, key=lambda bone: bone.head_local.x)\n"
         "bones.active = arm"
     )
     window.press("R")
